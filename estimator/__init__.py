@@ -1,0 +1,1 @@
+"""Pure numerics of Firethread: no input or output, no clock, no logging, no global state."""

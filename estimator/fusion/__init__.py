@@ -1,0 +1,1 @@
+"""What the default tracker fuses, and how: nodes, motion, readings between nodes, beginnings, update."""

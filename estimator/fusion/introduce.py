@@ -1,0 +1,204 @@
+"""Nodes enter: by a `node` reading, at a fix, at the base, or where a responder drops them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from msgspec.structs import replace
+
+from estimator.estimate import Vector3
+from estimator.fusion import physics
+from estimator.fusion.nodes import NodeState
+from estimator.fusion.state import FusionState
+from estimator.graph.dense import Array
+from estimator.measurements.node import MOVING_ROLES, Node
+
+NO_PRIOR_SIGMA_M = 1e3
+
+
+def introduce(state: FusionState, reading: Node) -> None:
+    """Take in a `node` reading: a new node, a name for a guessed one, or news of a known one."""
+    known = state.nodes.get(reading.node)
+    if known is None:
+        node = NodeState(node=reading.node, role=reading.role, named=True, t=reading.t)
+    elif known.role != reading.role and not _may_become(state, known, reading):
+        return
+    else:
+        node = replace(known, role=reading.role, named=True, t=max(known.t, reading.t))
+    if reading.heading_rad is not None:
+        node = replace(node, heading_rad=reading.heading_rad)
+    if reading.heading_sigma_rad is not None:
+        node = replace(node, heading_sigma_rad=reading.heading_sigma_rad)
+    state.nodes[node.node] = node
+    if node.mode == "undecided":
+        _place_new(state, node, reading)
+    elif reading.position_m is not None and node.mode in ("fixed", "retired"):
+        if node.place_m != reading.position_m:
+            state.say("conflict", reading.t, node.node, f"{node.node} is {node.mode} and is not moved")
+        return
+    state.count("fused")
+
+
+def _may_become(state: FusionState, known: NodeState, reading: Node) -> bool:
+    if not known.named and known.mode == "undecided":
+        state.sightings.pop(known.node, None)
+        return True
+    both_move = known.role in MOVING_ROLES and reading.role in MOVING_ROLES
+    both_stand = not {known.role, reading.role} & (MOVING_ROLES | {"base"})
+    if not known.named and known.mode != "retired" and (both_move or both_stand):
+        return True
+    text = f"{known.node} is a {known.role} and cannot become a {reading.role}: the reading is set aside"
+    state.say("conflict", reading.t, known.node, text)
+    state.count("not_fused")
+    return False
+
+
+def _place_new(state: FusionState, node: NodeState, reading: Node) -> None:
+    if reading.role == "base":
+        where = reading.position_m or (0.0, 0.0, 0.0)
+        state.nodes[node.node] = replace(node, mode="fixed", place_m=where)
+    elif reading.position_m is not None:
+        sigma = reading.sigma_m or {
+            "anchor": physics.ANCHOR_SIGMA_M,
+            "responder": physics.SURVEY_SIGMA_M,
+            "uav": physics.FIX_SIGMA_M[0],
+        }.get(reading.role, physics.SURVEY_SIGMA_M)
+        place(state, node, reading.t, reading.position_m, (sigma, sigma, sigma))
+
+
+def place(
+    state: FusionState, node: NodeState, t: float, position_m: Sequence[float] | Array, sigma: Sequence[float]
+) -> None:
+    """Decide an undecided node's position by a prior: static nodes stay there, the others begin to move.
+
+    Args:
+        state: the fusion.
+        node: an undecided node.
+        t: epoch of the position.
+        position_m: east, north, up (m).
+        sigma: standard deviation of each (m).
+    """
+    floored = [max(s, physics.SIGMA_FLOOR_M) for s in sigma]
+    state.graph.add_node(node.position, position_m, floored)
+    state.sightings.pop(node.node, None)
+    state.tried.pop(node.node, None)
+    if node.role in MOVING_ROLES:
+        across, upwards = physics.SPEED_SIGMA_MPS[node.role]
+        state.graph.add_node(node.velocity, (0.0, 0.0, 0.0), (across, across, upwards))
+        state.nodes[node.node] = replace(node, mode="free", pose_t=t, t=max(t, node.t))
+    else:
+        state.nodes[node.node] = replace(node, mode="static", t=max(t, node.t))
+
+
+def begin_at_base(state: FusionState, node: NodeState, t: float) -> None:
+    """A responder whose first position nobody gave enters at the base: 3 m horizontally, 1 m in height."""
+    place(state, node, t, state.base_place(), physics.ENTRY_SIGMA_M)
+
+
+def attach_unit(state: FusionState, node: NodeState, unit_heading_rad: float | None) -> None:
+    """A node that moved freely is known to carry a PDR unit: its velocity goes, ψ, β and s come.
+
+    Args:
+        state: the fusion.
+        node: a free node.
+        unit_heading_rad: what the unit's first displacement gives as heading, if it does.
+    """
+    state.graph.delete_nodes([node.velocity])
+    turn = initial_turn(node.heading_rad, unit_heading_rad)
+    sigma = (turn_sigma(node), physics.BIAS_SIGMA_RADPS, physics.SCALE_SIGMA)
+    state.graph.add_node(node.unit, (turn, 0.0, 0.0), sigma)
+    state.nodes[node.node] = replace(node, mode="unit")
+
+
+def turn_sigma(node: NodeState) -> float:
+    """Prior standard deviation of ψ (rad)."""
+    told = node.heading_sigma_rad or physics.HEADING_SIGMA_RAD
+    return float(min(max(told, physics.HEADING_FLOOR_RAD), np.pi))
+
+
+def initial_turn(node_heading_rad: float | None, unit_heading_rad: float | None) -> float:
+    """Prior mean of ψ, the turn of the unit's frame (rad).
+
+    The frame is nominally east (0), unless the node's `heading_rad` says otherwise. Gateways give there
+    either the direction of the frame's x axis or that in which the bearer faces at the start; the unit's
+    own first heading tells which: two of the three possible turns then agree.
+    """
+    if node_heading_rad is None:
+        return 0.0
+    if unit_heading_rad is None:
+        return _within_pi(node_heading_rad)
+    faced = _within_pi(node_heading_rad - unit_heading_rad)
+    axis = _within_pi(node_heading_rad)
+    if abs(_within_pi(faced - axis)) <= min(abs(faced), abs(axis)):
+        return axis
+    return 0.0
+
+
+def _within_pi(angle_rad: float) -> float:
+    return float((angle_rad + np.pi) % (2.0 * np.pi) - np.pi)
+
+
+def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float) -> bool:
+    """A breadcrumb lies where its bearer stood: an edge p − p_by = offset with an honest sigma.
+
+    Args:
+        state: the fusion.
+        name: the breadcrumb.
+        by: the responder, decided.
+        where_m: where `by` stood at `t`, 3 (m).
+        t: epoch of the drop.
+
+    Returns:
+        Whether the breadcrumb may be dropped at all.
+    """
+    node = state.node_of(name, "breadcrumb", t)
+    if node.mode not in ("undecided", "static") or node.role in MOVING_ROLES:
+        text = f"{name} is a {node.mode} {node.role}: it cannot be dropped by {by.node}"
+        state.say("conflict", t, name, text)
+        return False
+    if node.mode == "static":
+        state.graph.delete_nodes([node.position])
+        node = replace(node, mode="undecided")
+        state.say("node_moved", t, name, f"{name} was dropped anew by {by.node}")
+    wide = (NO_PRIOR_SIGMA_M,) * 3
+    place(state, node, t, where_m, wide)
+    start = state.graph.rows(state.nodes[name].position).start
+    information = np.array([s**-2 for s in physics.DROP_SIGMA_M])
+    axes = np.arange(3)
+    if by.mode == "fixed":
+        columns, jacobian = (start + axes)[:, None], np.ones((3, 1))
+    else:
+        other = state.graph.rows(by.position).start
+        columns = np.column_stack([start + axes, other + axes])
+        jacobian = np.column_stack([np.ones(3), -np.ones(3)])
+    state.graph.add_measurements(columns, jacobian, information, np.zeros(3))
+    return True
+
+
+def retire(state: FusionState, node: NodeState, t: float) -> None:
+    """Marginalise a node for good (operation 3); its last estimate stays to be shown."""
+    state.sightings.pop(node.node, None)
+    if node.mode == "fixed":
+        state.nodes[node.node] = replace(node, mode="retired", t=max(t, node.t), covariance_m2=(0.0,) * 6)
+        return
+    place_m, covariance_m2 = None, None
+    if node.decided:
+        place_m = tuple_of(state.graph.value(node.position))
+        rows = state.graph.rows(node.position)
+        covariance_m2 = upper_triangle(state.graph.covariance()[rows, rows])
+        owned = [v for v in (node.position, node.velocity, node.unit) if v in state.graph]
+        state.graph.delete_nodes(owned)
+    state.nodes[node.node] = replace(
+        node, mode="retired", t=max(t, node.t), place_m=place_m, covariance_m2=covariance_m2, trail=()
+    )
+
+
+def tuple_of(vector: Array) -> Vector3:
+    """Three numbers as they leave the tracker."""
+    east, north, up = vector.tolist()
+    return east, north, up
+
+
+def upper_triangle(matrix: Array) -> tuple[float, float, float, float, float, float]:
+    """ee, en, eu, nn, nu, uu of a 3 × 3 covariance."""
+    (ee, en, eu), (_, nn, nu), (_, _, uu) = matrix.tolist()
+    return ee, en, eu, nn, nu, uu

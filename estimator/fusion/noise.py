@@ -1,0 +1,90 @@
+"""How far off a technology's readings are, as learned, and what is common to those of one link.
+
+Walls, bodies and furniture between two radios stay while nobody moves: the errors of readings on one link are
+alike until an end has moved on. Taken for independent, they would make any estimate far too sure of itself.
+"""
+
+import math
+
+import msgspec
+
+from estimator.fusion import physics
+
+
+class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
+    """Errors of one technology, in units of its claimed or assumed sigma.
+
+    Attributes:
+        count: readings that it is learned from; older ones are forgotten.
+        squares: sum of their squared errors.
+        pairs: successive readings on links that it is learned from.
+        products: sum of the products of their errors.
+    """
+
+    count: float = physics.NOISE_PRIOR
+    squares: float = physics.NOISE_PRIOR
+    pairs: float = physics.NOISE_PRIOR
+    products: float = physics.NOISE_PRIOR * physics.SHARED_NOISE
+
+    @property
+    def factor(self) -> float:
+        """Learned standard deviation over the claimed or assumed one."""
+        return min(max(math.sqrt(max(self.squares, 0.0) / self.count), 0.3), 2.0)
+
+    @property
+    def shared(self) -> float:
+        """Share of the variance that successive readings on one link have in common, 0 to 0.95."""
+        return min(max(self.products / self.pairs / self.factor**2, 0.0), 0.95)
+
+    def with_errors(self, count: float, squares: float, pairs: float, products: float) -> "LearnedNoise":
+        """What is known after more readings."""
+        keep = physics.NOISE_MEMORY / (physics.NOISE_MEMORY + count)
+        keep_pairs = physics.NOISE_MEMORY / (physics.NOISE_MEMORY + pairs)
+        return LearnedNoise(
+            keep * (self.count + count),
+            keep * (self.squares + squares),
+            keep_pairs * (self.pairs + pairs),
+            keep_pairs * (self.products + products),
+        )
+
+
+class Link(msgspec.Struct, frozen=True, array_like=True):
+    """The newest reading on a link.
+
+    Attributes:
+        t: its epoch.
+        way_m: how far both ends had walked by then.
+        alike: how many readings, itself included, share its error.
+        kept: how much of the error before it still held, 0 to 1.
+        error: its error in units of the assumed sigma; None before it is fused.
+    """
+
+    t: float
+    way_m: float
+    alike: float = 1.0
+    kept: float = 0.0
+    error: float | None = None
+
+    def next(self, t: float, way_m: float) -> "Link":
+        """The link at its next reading."""
+        moved, waited = abs(way_m - self.way_m), abs(t - self.t)
+        kept = math.exp(-moved / physics.SHARED_M - waited / physics.SHARED_S)
+        return Link(t, way_m, 1.0 + kept * self.alike, kept, self.error)
+
+
+def link_sigma(noise: LearnedNoise, nominal: float, alike: float) -> float:
+    """Standard deviation to give to one reading of those that share an error.
+
+    k readings of white variance w and common variance c are worth k / (w + k c) together: each gets what it
+    adds to that.
+
+    Args:
+        noise: of the technology.
+        nominal: claimed or assumed standard deviation.
+        alike: k, which number in its row of alike readings this one is.
+    """
+    total = (nominal * noise.factor) ** 2
+    common = noise.shared * total
+    white = total - common
+    before, now = white + (alike - 1.0) * common, white + alike * common
+    return max(math.sqrt(before * now / white), physics.SIGMA_FLOOR_M)

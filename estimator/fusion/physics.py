@@ -1,0 +1,111 @@
+"""The numbers of the default tracker: one set for every incident, from physics and published figures.
+
+None is fitted to a recording of this repository. M marks what estimation.md reports as measured.
+"""
+
+from math import radians
+
+from estimator.graph.robust import Mixture
+
+TICK_S = 0.2
+"""Readings of one tick are linearised together; a runner moves 0.6 m in it, which interpolation takes out."""
+
+# A PDR unit (foot-mounted, or wheels), where it does not tell its own sigma.
+WALK_M_PER_ROOT_M = 0.035
+"""Random error of a step, in any direction: 3.5 cm after 1 m, growing with the root of the way."""
+STAND_M_PER_ROOT_S = 0.005
+DISPLACEMENT_FLOOR_M = 0.005
+HEADING_WALK_RAD_PER_ROOT_M = radians(0.4)
+"""A boot turns a little against the unit's frame with every step: a few tenths of a degree."""
+GYRO_WALK_RAD_PER_ROOT_S = radians(0.03)
+"""Angle random walk of a consumer MEMS gyro, 0.2 to 2 degrees per root hour, and a trembling foot."""
+BIAS_SIGMA_RADPS = radians(0.3)
+"""Gyro bias after the unit's own calibration at switch-on: 0.1 to 0.5 degrees a second once warm."""
+BIAS_WALK_RADPS_PER_ROOT_S = radians(0.001)
+SCALE_SIGMA = 0.01
+SCALE_WALK_PER_ROOT_S = 1e-5
+HEADING_SIGMA_RAD = 0.1
+STILL_MPS = 0.03
+STILL_TURN_RADPS = radians(3.0)
+"""Slower than both, a unit stands still, and what it reports as turn is gyro bias (ZARU)."""
+STILL_S = 5.0
+STILL_READINGS = 6
+FASTEST_MPS = 10.0
+GAP_MPS = 1.0
+SILENT_M_PER_ROOT_S = 1.0
+"""In a time that a unit's reports leave out (`from_t` after its last one), its bearer may walk so fast."""
+
+# Nodes without PDR: a velocity that is forgotten with time (Singer's model, for velocity).
+SPEED_SIGMA_MPS: dict[str, tuple[float, float]] = {"responder": (1.0, 0.2), "uav": (5.0, 2.0)}
+"""Usual speed of each role, along each horizontal axis and upwards."""
+SPEED_MEMORY_S: dict[str, float] = {"responder": 5.0, "uav": 5.0}
+
+SIGMA_FLOOR_M = 0.01
+"""No position, range or fix is believed to be better: the radios themselves are larger."""
+HEADING_FLOOR_RAD = 1e-3
+ENTRY_SIGMA_M = (3.0, 3.0, 1.0)
+"""Responders whose first position nobody gives enter at the base, within this."""
+DROP_SIGMA_M = (0.5, 0.5, 0.3)
+ANCHOR_SIGMA_M = 0.05
+SURVEY_SIGMA_M = 0.5
+FIX_SIGMA_M = (3.0, 3.0, 5.0)
+"""A GNSS fix without a sigma."""
+ALTITUDE_SIGMA_M = 1.0
+PRESSURE_SIGMA_M = 1.0
+PRESSURE_CORRELATION_S = 30.0
+"""Draught and doors move pressure for about so long: readings within it share their error."""
+LAYER_SIGMA = 0.05
+"""The air's mean temperature is known to about 5 %, and so is a height from pressure."""
+
+RANGE_SIGMA_M: dict[str, float] = {"uwb": 0.3, "ultrasound": 0.05, "rtt": 1.3}
+RANGE_SIGMA_OTHER_M = 0.5
+RANGE_SCALE_SIGMA = 0.05
+"""M: a public UWB-like data set carries +7 % scale."""
+RANGE_BIAS_SIGMA_M: dict[str, float] = {"uwb": 0.3, "ultrasound": 0.05, "rtt": 1.5}
+RANGE_BIAS_OTHER_SIGMA_M = 0.5
+RANGE_NOISE = Mixture(outliers=0.1, shift=1.5, spread=3.0)
+"""Obstructed ranges are too long: M, Wi-Fi RTT's 95th percentile is at 4 to 6 m."""
+
+RSSI_SIGMA_DB = 6.0
+"""M: 5 to 7 dB."""
+RSSI_POWER_DBM = -45.0
+RSSI_POWER_SIGMA_DB = 8.0
+RSSI_EXPONENT = 2.2
+RSSI_EXPONENT_SIGMA = 0.4
+RSSI_NOISE = Mixture(outliers=0.05, shift=-8.0, spread=12.0)
+"""A wall, a body or a fire takes away power; nothing adds much."""
+
+BEARING_SIGMA_RAD = 0.2
+BEARING_NOISE = Mixture(outliers=0.1, shift=0.0, spread=1.0)
+FIX_NOISE = Mixture(outliers=0.02, shift=0.0, spread=30.0)
+HEIGHT_NOISE = Mixture(outliers=0.05, shift=0.0, spread=5.0)
+TURN_NOISE = Mixture(outliers=0.1, shift=0.0, spread=radians(2.0))
+
+SHARED_NOISE = 0.3
+"""Share of a reading's variance that is the link's own until an end moves on, before it is learned."""
+SHARED_M = 4.0
+"""A room's width: having walked it, one looks through other walls."""
+SHARED_S = 600.0
+NOISE_MEMORY = 300.0
+"""How many readings back the noise of a technology is learned from."""
+NOISE_PRIOR = 20.0
+"""How many readings the assumed noise counts as."""
+
+PENDING_S = 2.0
+"""A reading waits so long for the displacement that covers its epoch."""
+
+# Static nodes that begin with ranges or RSSI only.
+CLONE_STEP_M = 1.5
+"""A kept position of the node that measured, each so many metres of its way."""
+CLONES_MAX = 60
+CLONE_SIGMA_M = 0.02
+SIGHTINGS_MIN = 6
+SIGHTINGS_MAX = 300
+MODE_MARGIN = 7.0
+"""How much worse (in log likelihood) the second mode must be: odds of 1 to 1,000."""
+DECIDED_SIGMA_M: dict[str, float] = {"range": 2.0, "rssi": 4.0}
+UNDECIDED_UP_SIGMA_M = 3.0
+"""A node that only ranges tell of lies about as high as who measured it, or a storey off."""
+UNDECIDED_MOVING_UP_SIGMA_M = 1.5
+MOVING_SIGHTINGS_S = 3.0
+SIGHTINGS_S = 900.0

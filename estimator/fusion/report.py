@@ -1,0 +1,94 @@
+"""What leaves the fusion: estimates of every node, and the position of one relative to another."""
+
+import numpy as np
+
+from estimator.estimate import NodeEstimate, Relative
+from estimator.fusion.introduce import tuple_of, upper_triangle
+from estimator.fusion.nodes import NodeState
+from estimator.fusion.state import FusionState
+from estimator.graph.dense import Array
+
+MOVING_MPS = 0.3
+"""Below it a velocity tells no heading."""
+
+
+def estimates(state: FusionState, covariance: Array) -> list[NodeEstimate]:
+    """Every node ever introduced, in order of introduction.
+
+    Args:
+        state: the fusion.
+        covariance: Σ of its graph, n × n.
+    """
+    return [_estimate(state, node, covariance) for node in state.nodes.values()]
+
+
+def _estimate(state: FusionState, node: NodeState, covariance: Array) -> NodeEstimate:
+    if node.place_m is not None or not node.decided:
+        known = (0.0,) * 6 if node.mode == "fixed" else node.covariance_m2
+        return NodeEstimate(
+            node=node.node,
+            role=node.role,
+            t=node.t,
+            position_m=node.place_m,
+            covariance_m2=known,
+            retired=node.mode == "retired",
+        )
+    rows = state.graph.rows(node.position)
+    heading, sigma = _heading(state, node, covariance)
+    return NodeEstimate(
+        node=node.node,
+        role=node.role,
+        t=node.t,
+        position_m=tuple_of(state.graph.value(node.position)),
+        covariance_m2=upper_triangle(covariance[rows, rows]),
+        heading_rad=heading,
+        heading_sigma_rad=sigma,
+        speed_mps=node.speed_mps,
+    )
+
+
+def _heading(state: FusionState, node: NodeState, covariance: Array) -> tuple[float | None, float | None]:
+    """The unit's reported heading plus ψ; else the direction of its way."""
+    if node.mode == "unit":
+        start = state.graph.rows(node.unit).start
+        psi, sigma = float(state.graph.reference[start]), float(np.sqrt(covariance[start, start]))
+        if node.unit_heading_rad is not None:
+            return _within_pi(node.unit_heading_rad + psi), sigma
+        if len(node.trail) > 1 and (node.speed_mps or 0.0) > MOVING_MPS:
+            _, e, n, _ = (np.array(node.trail[-1]) - np.array(node.trail[-2])).tolist()
+            return _within_pi(float(np.arctan2(n, e)) + psi), float(np.hypot(sigma, 0.1))
+    if node.mode == "free" and (node.speed_mps or 0.0) > MOVING_MPS:
+        rows = state.graph.rows(node.velocity)
+        east, north, _ = state.graph.value(node.velocity).tolist()
+        speed = float(np.hypot(east, north))
+        across = np.array([-north, east, 0.0]) / speed**2
+        sigma = float(np.sqrt(across @ covariance[rows, rows] @ across))
+        return float(np.arctan2(north, east)), sigma
+    return None, None
+
+
+def relative(state: FusionState, covariance: Array, a: str, b: str) -> Relative | None:
+    """Where `b` is relative to `a`, cross terms included; None where either has no position.
+
+    Raises:
+        KeyError: a node is not known.
+    """
+    ends = state.nodes[a], state.nodes[b]
+    if a == b or any(n.place_m is None and not n.decided for n in ends):
+        return None
+    selector = np.zeros((3, state.graph.size))
+    total = np.zeros((3, 3))
+    places = []
+    for node, sign in zip(ends, (-1.0, 1.0), strict=True):
+        places.append(state.place(node))
+        if node.place_m is None:
+            selector[:, state.graph.rows(node.position)] += sign * np.eye(3)
+        elif node.covariance_m2 is not None:
+            ee, en, eu, nn, nu, uu = node.covariance_m2
+            total += np.array([[ee, en, eu], [en, nn, nu], [eu, nu, uu]])
+    total += selector @ covariance @ selector.T
+    return Relative(delta_m=tuple_of(places[1] - places[0]), covariance_m2=upper_triangle(total))
+
+
+def _within_pi(angle_rad: float) -> float:
+    return float((angle_rad + np.pi) % (2.0 * np.pi) - np.pi)

@@ -1,0 +1,241 @@
+"""The Kirchhoff state of paper A: information matrix L, vector b, and its three operations.
+
+Numbers of hundreds of metres and of 10⁻⁵ rad/s live in one system, so `b` is kept in deviations from
+the reference `x`, the point of linearisation: L (x̂ − x) = b instead of the paper's L x̂ = b (eq. 4).
+Moving the reference (`rebase`) changes neither estimate nor covariance.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Self
+
+import numpy as np
+
+from estimator.graph.dense import Array, Cholesky, Indices, factorise, half_solve, inverse, mended, solve
+from estimator.graph.variable import DIMENSION, Variable
+
+
+class Kirchhoff:
+    """Dense L, b and reference x over keyed blocks; storage grows by doubling.
+
+    Attributes:
+        starts: first row of each block, in the order of the rows.
+        size: rows in use.
+    """
+
+    def __init__(self, capacity: int = 32) -> None:
+        self.starts: dict[Variable, int] = {}
+        self.size = 0
+        self._matrix: Array = np.zeros((capacity, capacity))
+        self._vector: Array = np.zeros(capacity)
+        self._reference: Array = np.zeros(capacity)
+
+    @classmethod
+    def of(cls, variables: Iterable[Variable], matrix: Array, vector: Array, reference: Array) -> Self:
+        """A graph of given blocks, in order; it owns the arrays, which are as large as its capacity."""
+        graph = cls(0)
+        for variable in variables:
+            graph.starts[variable] = graph.size
+            graph.size += DIMENSION[variable.kind]
+        graph._matrix, graph._vector, graph._reference = matrix, vector, reference
+        return graph
+
+    def storage(self) -> tuple[Array, Array, Array]:
+        """L, b and x with their spare rows, as `of` takes them."""
+        return self._matrix, self._vector, self._reference
+
+    @property
+    def information(self) -> Array:
+        """L, n × n: a view, to be read."""
+        return self._matrix[: self.size, : self.size]
+
+    @property
+    def vector(self) -> Array:
+        """b, n, in deviations from the reference: a view, to be read."""
+        return self._vector[: self.size]
+
+    @property
+    def reference(self) -> Array:
+        """x, n, the point of linearisation: a view, to be read."""
+        return self._reference[: self.size]
+
+    @property
+    def capacity(self) -> int:
+        """Rows that fit without growing."""
+        return len(self._vector)
+
+    def __contains__(self, variable: Variable) -> bool:
+        return variable in self.starts
+
+    def rows(self, variable: Variable) -> slice:
+        """The rows of a block.
+
+        Raises:
+            KeyError: there is no such variable.
+        """
+        start = self.starts[variable]
+        return slice(start, start + DIMENSION[variable.kind])
+
+    def value(self, variable: Variable) -> Array:
+        """The reference of one block: its estimate, once `solve` and `rebase` have been called."""
+        return self._reference[self.rows(variable)]
+
+    def copy(self) -> Self:
+        """An independent copy."""
+        return self.of(self.starts, self._matrix.copy(), self._vector.copy(), self._reference.copy())
+
+    def add_node(
+        self, variable: Variable, reference: Sequence[float] | Array, sigma: Iterable[float]
+    ) -> None:
+        """Operation 2 (eq. 13), with a prior of its own on each number.
+
+        Args:
+            variable: the new block.
+            reference: where it is linearised, and the mean of its prior.
+            sigma: standard deviation of each number of the prior; infinite: no prior, edges must follow.
+
+        Raises:
+            ValueError: the variable is there already.
+        """
+        if variable in self.starts:
+            raise ValueError(f"{variable} is in the graph already")
+        start, end = self.size, self.size + DIMENSION[variable.kind]
+        if end > self.capacity:
+            self._grow(max(2 * self.capacity, end))
+        self._matrix[start:end, :end] = 0.0
+        self._matrix[:start, start:end] = 0.0
+        self._vector[start:end] = 0.0
+        self._reference[start:end] = reference
+        self._matrix[range(start, end), range(start, end)] = [s**-2 for s in sigma]
+        self.starts[variable] = start
+        self.size = end
+
+    def _grow(self, capacity: int) -> None:
+        n = self.size
+        matrix, vector, reference = np.zeros((capacity, capacity)), np.zeros(capacity), np.zeros(capacity)
+        matrix[:n, :n], vector[:n], reference[:n] = self.information, self.vector, self.reference
+        self._matrix, self._vector, self._reference = matrix, vector, reference
+
+    def add_measurements(
+        self, columns: Indices, jacobian: Array, information: Array, residual: Array
+    ) -> None:
+        """Operation 1 (eq. 11, 12, 18 to 21) for m scalar measurements at once.
+
+        L += Hᵀ P⁻¹ H and b += Hᵀ P⁻¹ (z − h(x)), which is eq. 18 in deviations from x. An edge to an anchor
+        (eq. 12) has no column for the anchor.
+
+        Args:
+            columns: which numbers each measurement depends on, m × k; unused ones may be 0.
+            jacobian: derivatives of h by them at the reference, m × k; 0 for unused ones.
+            information: P⁻¹ of each, m.
+            residual: z − h(x) of each, m.
+        """
+        scatter(self._matrix, columns, jacobian, information)
+        np.add.at(self._vector, columns.ravel(), (jacobian * (information * residual)[:, None]).ravel())
+
+    def delete_nodes(self, variables: Sequence[Variable]) -> None:
+        """Operation 3 (eq. 17): marginalise blocks; what they held of their neighbours stays as edges.
+
+        Raises:
+            KeyError: a variable is not there.
+        """
+        if not variables:
+            return
+        gone = np.concatenate([np.arange(*self.rows(v).indices(self.size)) for v in variables])
+        kept = np.setdiff1d(np.arange(self.size), gone)
+        matrix, vector = self.information, self.vector
+        coupling = matrix[np.ix_(gone, kept)]
+        block = matrix[np.ix_(gone, gone)]
+        try:
+            cholesky = factorise(block)
+        except ValueError:
+            cholesky = factorise(mended(block))
+        through = solve(cholesky, np.column_stack([coupling, vector[gone]]))
+        left = matrix[np.ix_(kept, kept)] - coupling.T @ through[:, :-1]
+        rest = vector[kept] - coupling.T @ through[:, -1]
+        reference = self.reference[kept]
+        self.size = n = len(kept)
+        self._matrix[:n, :n] = 0.5 * (left + left.T)
+        self._vector[:n], self._reference[:n] = rest, reference
+        gone_set = set(variables)
+        start = 0
+        remaining = [v for v in self.starts if v not in gone_set]
+        self.starts = {}
+        for v in remaining:
+            self.starts[v] = start
+            start += DIMENSION[v.kind]
+
+    def advance(self, rows: Indices, moved: Array, transition: Array, noise: Array) -> None:
+        """Mobile nodes (section IV-E): add the new state, its edge, delete the old one, in closed form.
+
+        For an edge x' = f(x) + w with an invertible Jacobian F, operations 2, 1 and 3 together give
+        L' = A − A E (Q⁻¹ + Eᵀ A E)⁻¹ Eᵀ A with A = F⁻ᵀ L F⁻¹ and E the rows that move. It needs no extra
+        rows, and rounds less than the three one by one, because a small Q only makes a small correction.
+
+        Args:
+            rows: the rows of g moving groups of d numbers, g × d.
+            moved: f(x) of each, g × d: the new reference.
+            transition: F of each, g × d × d.
+            noise: covariance Q of w of each, g × d × d, positive definite.
+        """
+        flat = rows.ravel()
+        n = self.size
+        back = np.linalg.inv(transition)
+        matrix = self._matrix[:n, :n]
+        g, d = rows.shape
+        matrix[flat] = np.matmul(back.transpose(0, 2, 1), matrix[flat].reshape(g, d, n)).reshape(g * d, n)
+        turned = np.matmul(matrix[:, flat].reshape(n, g, 1, d), back).reshape(n, g * d)
+        # Where F contracts, its inverse would blow up what rounding leaves of asymmetry.
+        turned[flat] = 0.5 * (turned[flat] + turned[flat].T)
+        matrix[:, flat], matrix[flat] = turned, turned.T
+        vector = self._vector[:n]
+        vector[flat] = np.matmul(back.transpose(0, 2, 1), vector[flat].reshape(g, d, 1)).ravel()
+        kernel = matrix[np.ix_(flat, flat)].copy()
+        for i, block in enumerate(np.linalg.inv(noise)):
+            kernel[i * d : (i + 1) * d, i * d : (i + 1) * d] += block
+        try:
+            cholesky = factorise(kernel)
+        except ValueError:
+            cholesky = factorise(mended(kernel))
+        half = half_solve(cholesky, np.column_stack([matrix[flat], vector[flat]]))
+        edges = half[:, :-1]
+        matrix -= edges.T @ edges
+        vector -= edges.T @ half[:, -1]
+        self._reference[flat] = moved.ravel()
+
+    def factorise(self) -> Cholesky:
+        """The Cholesky factor of L; where rounding has left L indefinite, L is mended first."""
+        try:
+            return factorise(self.information)
+        except ValueError:
+            self._matrix[: self.size, : self.size] = mended(self.information)
+            return factorise(self.information)
+
+    def settle(self, matrix: Array, reference: Array) -> None:
+        """Take over a solved system: L (n × n) linearised at the estimate x (n), where b is nil."""
+        self._matrix[: self.size, : self.size] = matrix
+        self._vector[: self.size] = 0.0
+        self._reference[: self.size] = reference
+
+    def rebase(self, reference: Array) -> None:
+        """Move the point of linearisation: b changes so that the estimate stays.
+
+        Args:
+            reference: the new x, n.
+        """
+        self._vector[: self.size] -= self.information @ (reference - self.reference)
+        self._reference[: self.size] = reference
+
+    def solve(self) -> Array:
+        """The estimate x̂ (eq. 4), n."""
+        return self.reference + solve(self.factorise(), self.vector)
+
+    def covariance(self) -> Array:
+        """Σ = L⁻¹ (eq. 5), n × n; the block of a node is its effective resistance to the base."""
+        return inverse(self.factorise())
+
+
+def scatter(matrix: Array, columns: Indices, jacobian: Array, information: Array) -> None:
+    """`matrix` += Hᵀ diag(information) H, H given by its rows' columns (m × k); `matrix` is contiguous."""
+    weighted = jacobian * information[:, None]
+    flat = columns[:, :, None] * matrix.shape[1] + columns[:, None, :]
+    np.add.at(matrix.reshape(-1), flat.ravel(), (weighted[:, :, None] * jacobian[:, None, :]).ravel())

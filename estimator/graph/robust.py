@@ -1,0 +1,74 @@
+"""Noise with outliers: two-component mixtures, as weights for the next least-squares step (IRLS, EM).
+
+A redescending loss lets an outlier lose its pull (estimation.md, point 5: 0.87 m with Huber, 0.30 m with
+Cauchy). The mixture is such a loss with a meaning: each component says how often it happens, how wide it
+is and where it is centred, so an obstructed range may be too long but hardly too short.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.graph.dense import Array
+
+
+class Mixture(NamedTuple):
+    """Good noise N(0, σ²), or with probability `outliers` bad noise N(shift, spread² + σ²).
+
+    Attributes:
+        outliers: how often the bad noise happens, 0 to 1.
+        shift: mean of the bad noise, in the reading's unit.
+        spread: its standard deviation beyond the good one, in the reading's unit.
+    """
+
+    outliers: float
+    shift: float
+    spread: float
+
+
+class Weighted(NamedTuple):
+    """One least-squares step's view of m readings.
+
+    Attributes:
+        information: P⁻¹ of each, m.
+        residual: the residual to be used with it, m.
+        good: probability that the reading has the good noise, m.
+    """
+
+    information: Array
+    residual: Array
+    good: Array
+
+
+def weigh(
+    residual: Array, sigma: Array, predicted: Array, outliers: Array, shift: Array, spread: Array
+) -> Weighted:
+    """E-step: the probability of each component, and the Gaussian edge that both together pull with.
+
+    The probabilities come from the residual with the state's own uncertainty added, so that an uncertain
+    state does not make outliers of good readings.
+
+    Args:
+        residual: z − h(x), m.
+        sigma: standard deviation of the good noise, m.
+        predicted: variance of h(x) by the state's covariance, m.
+        outliers: see `Mixture`, m.
+        shift: see `Mixture`, m.
+        spread: see `Mixture`, m.
+    """
+    good_variance = sigma**2
+    bad_variance = good_variance + spread**2
+    good_total, bad_total = good_variance + predicted, bad_variance + predicted
+    log_good = np.log1p(-outliers) - 0.5 * (np.log(good_total) + residual**2 / good_total)
+    log_bad = np.log(outliers) - 0.5 * (np.log(bad_total) + (residual - shift) ** 2 / bad_total)
+    good = 1.0 / (1.0 + np.exp(np.clip(log_bad - log_good, -700.0, 700.0)))
+    from_good, from_bad = good / good_variance, (1.0 - good) / bad_variance
+    information = from_good + from_bad
+    return Weighted(information, residual - shift * from_bad / information, good)
+
+
+def cauchy_weight(residual: Array, scale: float) -> Array:
+    """Weight 1 / (1 + (r / c)²) of the Cauchy loss for whitened residuals (m), c = `scale`."""
+    weight: NDArray[np.float64] = 1.0 / (1.0 + (residual / scale) ** 2)
+    return weight

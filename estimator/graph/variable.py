@@ -1,0 +1,24 @@
+"""What a block of the Kirchhoff matrix stands for."""
+
+from typing import Literal, NamedTuple
+
+VariableKind = Literal["position", "velocity", "unit", "range", "rssi"]
+"""position: east, north, up (m); velocity: the same (m/s); unit: heading error ψ (rad), gyro bias β (rad/s)
+and step scale error s − 1 of a PDR unit; range: scale error and bias (m) of a ranging technology; rssi: power
+at 1 m (dBm) and path-loss exponent."""
+
+DIMENSION: dict[VariableKind, int] = {"position": 3, "velocity": 3, "unit": 3, "range": 2, "rssi": 2}
+
+
+class Variable(NamedTuple):
+    """The key of a block.
+
+    Attributes:
+        kind: what its numbers mean.
+        owner: the node, technology or incident that it belongs to.
+        epoch: the moment that it is frozen at, Unix seconds; None: static, or moves along with its owner.
+    """
+
+    kind: VariableKind
+    owner: str
+    epoch: float | None = None

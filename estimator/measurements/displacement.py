@@ -1,0 +1,77 @@
+"""`displacement`: what a PDR unit has moved since its last report."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from estimator.graph.dense import Array
+from estimator.measurements.base import AngleRad, EpochSeconds, Identifier, Reading, SigmaM, Vector3M
+
+
+class Displacement(Reading, tag="displacement", frozen=True):
+    """The displacement of a PDR unit since its last one, in the unit's own navigation frame.
+
+    The frame has z up and x nominally east; it is turned by an unknown, slowly drifting heading error.
+
+    Attributes:
+        node: the unit.
+        delta_m: displacement (m).
+        from_t: start of the displacement, Unix seconds; None: since the last one.
+        heading_rad: the unit's heading at `t` in that frame (rad).
+        sigma_m: standard deviation per axis (m).
+    """
+
+    node: Identifier
+    delta_m: Vector3M
+    from_t: EpochSeconds | None = None
+    heading_rad: AngleRad | None = None
+    sigma_m: SigmaM | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse a displacement that ends before it starts.
+
+        Raises:
+            ValueError: `from_t` is later than `t`.
+        """
+        if self.from_t is not None and self.from_t > self.t:
+            raise ValueError("`from_t` is later than `t`: a displacement ends after it starts")
+
+
+class Moved(NamedTuple):
+    """Where units stand after a displacement, with derivatives by where they stood.
+
+    Attributes:
+        state: position, ψ, β, s − 1 of each, g × 6.
+        transition: derivatives of `state` by the state before, g × 6 × 6.
+    """
+
+    state: Array
+    transition: Array
+
+
+def move(state: Array, delta_m: Array, duration_s: Array) -> Moved:
+    """P' = p + s Rz(ψ) δ and ψ' = ψ + β Δt (estimation.md, point 1): the unit's frame turns while it walks.
+
+    The frame's turn halfway is used for the displacement, exact to second order in β Δt.
+
+    Args:
+        state: east, north, up (m), ψ (rad), β (rad/s), s − 1 of each unit, g × 6.
+        delta_m: displacement in the unit's frame, g × 3 (m).
+        duration_s: Δt, g (s).
+    """
+    position, psi, bias, scale = state[:, :3], state[:, 3], state[:, 4], 1.0 + state[:, 5]
+    halfway = psi + 0.5 * bias * duration_s
+    cosine, sine = np.cos(halfway), np.sin(halfway)
+    east = cosine * delta_m[:, 0] - sine * delta_m[:, 1]
+    north = sine * delta_m[:, 0] + cosine * delta_m[:, 1]
+    turned = np.column_stack([east, north, delta_m[:, 2]])
+    after = state.copy()
+    after[:, :3] = position + scale[:, None] * turned
+    after[:, 3] = psi + bias * duration_s
+    transition = np.broadcast_to(np.eye(6), (len(state), 6, 6)).copy()
+    transition[:, 0, 3] = -scale * north
+    transition[:, 1, 3] = scale * east
+    transition[:, :2, 4] = transition[:, :2, 3] * (0.5 * duration_s)[:, None]
+    transition[:, :3, 5] = turned
+    transition[:, 3, 4] = duration_s
+    return Moved(after, transition)

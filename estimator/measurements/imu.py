@@ -1,0 +1,41 @@
+"""`imu`: raw samples of a foot-mounted inertial unit. Accepted and logged; no tracker fuses them yet."""
+
+from typing import Annotated
+
+from msgspec import Meta
+
+from estimator.measurements.base import Identifier, Reading
+
+SampleRateHz = Annotated[float, Meta(gt=0.0, le=10_000.0)]
+Accel = Annotated[float, Meta(ge=-10_000.0, le=10_000.0)]
+Gyro = Annotated[float, Meta(ge=-1_000.0, le=1_000.0)]
+Mag = Annotated[float, Meta(ge=-100_000.0, le=100_000.0)]
+MAX_SAMPLES = 10_000
+
+
+class Imu(Reading, tag="imu", frozen=True):
+    """Raw IMU samples in right-handed sensor axes fixed to the boot, the first one at `t`.
+
+    Attributes:
+        node: the unit.
+        rate_hz: samples a second.
+        accel_mps2: specific force, n × 3 (m/s²).
+        gyro_radps: angular rate, n × 3 (rad/s).
+        mag_ut: magnetic flux density, n × 3 (µT).
+    """
+
+    node: Identifier
+    rate_hz: SampleRateHz
+    accel_mps2: Annotated[list[tuple[Accel, Accel, Accel]], Meta(min_length=1, max_length=MAX_SAMPLES)]
+    gyro_radps: Annotated[list[tuple[Gyro, Gyro, Gyro]], Meta(min_length=1, max_length=MAX_SAMPLES)]
+    mag_ut: Annotated[list[tuple[Mag, Mag, Mag]], Meta(min_length=1, max_length=MAX_SAMPLES)] | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse sample arrays of different lengths.
+
+        Raises:
+            ValueError: `accel_mps2`, `gyro_radps` and `mag_ut` differ in length.
+        """
+        n = len(self.accel_mps2)
+        if len(self.gyro_radps) != n or (self.mag_ut is not None and len(self.mag_ut) != n):
+            raise ValueError("`accel_mps2`, `gyro_radps` and `mag_ut` must have as many samples each")

@@ -1,0 +1,63 @@
+"""`range`: a measured distance between two nodes."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from msgspec import Meta
+
+from estimator.graph.dense import Array
+from estimator.measurements.base import Identifier, PairReading, SigmaM
+
+RangeM = Annotated[float, Meta(ge=0.0, le=100_000.0)]
+
+
+class Range(PairReading, tag="range", frozen=True):
+    """The distance from `a` to `b`.
+
+    Attributes:
+        range_m: distance (m).
+        sigma_m: standard deviation (m).
+        technology: `uwb`, `ultrasound`, `rtt` …: each has its own noise, bias and scale.
+    """
+
+    range_m: RangeM
+    sigma_m: SigmaM | None = None
+    technology: Identifier | None = None
+
+
+NEAR_M = 1e-3
+
+
+class PairJacobian(NamedTuple):
+    """A predicted reading between two nodes, and its derivatives, for m readings.
+
+    Attributes:
+        predicted: h(x), m.
+        by_a: derivatives by the position of `a`, m × 3.
+        by_b: derivatives by the position of `b`, m × 3.
+        by_extra: derivatives by the states of the technology, m × 2.
+    """
+
+    predicted: Array
+    by_a: Array
+    by_b: Array
+    by_extra: Array
+
+
+def predict_range(a: Array, b: Array, scale_error: Array, bias_m: Array) -> PairJacobian:
+    """Range that a technology with a scale and a bias of its own reports: (1 + k) ‖a − b‖ + c.
+
+    Paper A's γ-noise range (before eq. 1, Jacobian eq. 19) with the two states of estimation.md, point 3. At
+    distance 0 the direction is undefined: there the Jacobian falls to 0 instead.
+
+    Args:
+        a: positions, m × 3 (m).
+        b: positions, m × 3 (m).
+        scale_error: k, m.
+        bias_m: c, m (m).
+    """
+    difference = a - b
+    distance = np.sqrt((difference**2).sum(axis=1) + NEAR_M**2)
+    along = difference * ((1.0 + scale_error) / distance)[:, None]
+    extra = np.column_stack([distance, np.ones_like(distance)])
+    return PairJacobian((1.0 + scale_error) * distance + bias_m, along, -along, extra)

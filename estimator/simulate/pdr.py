@@ -1,0 +1,119 @@
+"""A pedestrian dead-reckoning unit: displacements in a frame that its gyro turns away from east."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.measurements import Displacement
+from estimator.simulate.base import FloatArray, TrueTrack
+
+REST_M = 0.02
+"""Below this displacement in one period the foot stands still, and the zero-velocity update holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class PdrUnit:
+    """How good a unit is.
+
+    Attributes:
+        period_s: it reports this often (s).
+        heading_sigma_rad: error of its alignment to east at the start (rad).
+        bias_radps: what its gyro turns the frame by, each second (rad/s).
+        heading_walk_rad: random walk of the heading error, each period (rad).
+        scale: it reports the true displacement divided by this.
+        noise_m: standard deviation per axis and report while moving (m).
+        rest_noise_m: the same while the foot stands (m).
+        heading_noise_rad: standard deviation of the reported heading (rad).
+    """
+
+    period_s: float = 1.0
+    heading_sigma_rad: float = 0.1
+    bias_radps: float = 0.0
+    heading_walk_rad: float = 0.004
+    scale: float = 1.0
+    noise_m: float = 0.03
+    rest_noise_m: float = 0.002
+    heading_noise_rad: float = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Dead:
+    """What a unit reckoned: kept whole, so that reports may be merged over a radio gap.
+
+    Attributes:
+        t_s: ends of the periods, n (s); the first period begins at `start_s`.
+        delta_m: displacement of each period in the unit's frame, n × 3 (m).
+        heading_rad: heading in that frame at each end, n (rad).
+        start_s: beginning of the first period (s).
+    """
+
+    t_s: FloatArray
+    delta_m: FloatArray
+    heading_rad: FloatArray
+    start_s: float
+
+
+def reckon(truth: TrueTrack, unit: PdrUnit, rng: np.random.Generator) -> Dead:
+    """What `unit` on a walker with `truth` reports.
+
+    The frame's error ψ starts at a draw of `heading_sigma_rad` and drifts by bias and random walk;
+    with p' = p + s·Rz(ψ)·δ the report is δ = Rz(-ψ)·Δp / s + noise.
+
+    Args:
+        truth: the walker's true track.
+        unit: how good the unit is.
+        rng: where the errors come from.
+    """
+    ends = np.arange(truth.t_s[0] + unit.period_s, truth.t_s[-1] + 1e-6, unit.period_s)
+    n = len(ends)
+    true = np.diff(truth.at(np.concatenate([truth.t_s[:1], ends])), axis=0)
+    psi = rng.normal(0.0, unit.heading_sigma_rad) + np.cumsum(
+        unit.bias_radps * unit.period_s + rng.normal(0.0, unit.heading_walk_rad, n)
+    )
+    delta = np.stack(
+        [
+            np.cos(psi) * true[:, 0] + np.sin(psi) * true[:, 1],
+            -np.sin(psi) * true[:, 0] + np.cos(psi) * true[:, 1],
+            true[:, 2],
+        ],
+        axis=1,
+    )
+    sigma = np.where(np.linalg.norm(true, axis=1) < REST_M, unit.rest_noise_m, unit.noise_m)
+    delta = delta / unit.scale + rng.normal(0.0, 1.0, (n, 3)) * sigma[:, None]
+    heading = truth.heading_at(ends) - psi + rng.normal(0.0, unit.heading_noise_rad, n)
+    return Dead(ends, delta, heading, float(truth.t_s[0]))
+
+
+def displacements(
+    node: str, dead: Dead, silent: tuple[float, float] = (np.inf, np.inf)
+) -> list[Displacement]:
+    """The readings of a unit.
+
+    Args:
+        node: the unit.
+        dead: what it reckoned.
+        silent: from when to when (s) its radio is dead; what it walked then comes as one displacement
+            with `from_t` when the radio is back.
+    """
+    readings = []
+    since = dead.start_s
+    pending = np.zeros(3)
+    for t, delta, heading in zip(dead.t_s.tolist(), dead.delta_m, dead.heading_rad.tolist(), strict=True):
+        pending = pending + delta
+        if silent[0] <= t < silent[1]:
+            continue
+        readings.append(
+            Displacement(
+                t=round(t, 3),
+                node=node,
+                delta_m=(
+                    round(float(pending[0]), 4),
+                    round(float(pending[1]), 4),
+                    round(float(pending[2]), 4),
+                ),
+                from_t=round(since, 3),
+                heading_rad=round(heading, 4),
+            )
+        )
+        since, pending = t, np.zeros(3)
+    return readings

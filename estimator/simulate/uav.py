@@ -1,0 +1,39 @@
+"""A UAV around the office: its circle, and its ranges through windows."""
+
+import numpy as np
+
+from estimator.measurements import Range
+from estimator.simulate.base import FloatArray, TrueTrack
+from estimator.simulate.building import DEPTH_M, EAST_M, WEST_M, walls_between
+from estimator.simulate.radio import Uwb
+
+LAP_S = 150.0
+REACH_M = 45.0
+
+
+def circle(end_s: float) -> TrueTrack:
+    """An ellipse round the building, 9 to 15 m up, a lap in 150 s, until `end_s`."""
+    t_s = np.arange(0.0, end_s + 0.05, 0.1)
+    angle = np.pi + 2 * np.pi * t_s / LAP_S
+    east = (WEST_M + EAST_M) / 2 + 34.0 * np.cos(angle)
+    north = (DEPTH_M + 11.0) * np.sin(angle)
+    up = 12.0 + 3.0 * np.sin(0.37 * angle)
+    heading = np.unwrap(np.arctan2(np.gradient(north), np.gradient(east)))
+    position = np.stack([east, north, up], axis=1)
+    return TrueTrack(t_s, position, np.zeros(len(t_s), dtype=np.int64), heading)
+
+
+def window_ranges(
+    uav: str, flight: TrueTrack, node: str, truth: TrueTrack, t_s: FloatArray, rng: np.random.Generator
+) -> list[Range]:
+    """Ranges from `uav` to `node` at epochs `t_s`: one outer wall counts as a window, a second one blocks."""
+    a, b = flight.at(t_s), truth.at(t_s)
+    distance = np.linalg.norm(b - a, axis=1)
+    walls = np.maximum(walls_between(a, b) - 1.0, 0.0)
+    seen = (walls == 0) & (distance < REACH_M)
+    measured = Uwb(range_m=REACH_M, drop_p=0.3).ranged_m(distance, walls, np.zeros(len(t_s)), rng)
+    return [
+        Range(t=round(t, 3), a=uav, b=node, range_m=round(range_m, 3), technology="uwb")
+        for t, range_m, ok in zip(t_s.tolist(), measured.tolist(), seen.tolist(), strict=True)
+        if ok and not np.isnan(range_m)
+    ]

@@ -1,0 +1,62 @@
+"""The interface of a tracker, and of a smoother. A new estimator is one new file in this folder."""
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol, Self
+
+import msgspec
+
+from estimator.estimate import NodeEstimate, Notice, Relative, TrackPoint
+from estimator.measurements import AnyReading
+
+
+class TrackerSettings(msgspec.Struct, frozen=True, kw_only=True):
+    """What an incident tells its tracker.
+
+    Attributes:
+        lag_s: readings later than this behind the newest epoch are counted, not fused (s).
+        origin_wgs84: latitude (°), longitude (°), height above the ellipsoid (m) of the origin, if known.
+    """
+
+    lag_s: float = 60.0
+    origin_wgs84: tuple[float, float, float] | None = None
+
+
+class Tracker(Protocol):
+    """Folds readings into estimates; a deterministic function of what it is given."""
+
+    def fold(self, readings: Sequence[AnyReading]) -> None:
+        """Fold readings, in any order of epochs; those within the lag lose no accuracy by being late."""
+
+    def estimates(self) -> list[NodeEstimate]:
+        """Every node ever introduced, in order of introduction."""
+
+    def relative(self, a: str, b: str) -> Relative | None:
+        """Where `b` is relative to `a`; None where either has no decided position.
+
+        Raises:
+            KeyError: a node is not known.
+        """
+
+    def take_notices(self) -> list[Notice]:
+        """What was noticed since the last call."""
+
+    def counts(self) -> Mapping[str, int]:
+        """How many readings were fused, not fused, too late, rejected as outliers, in all."""
+
+    def snapshot(self) -> bytes:
+        """The whole state: `restore` of it continues with results equal to the last bit."""
+
+    @classmethod
+    def restore(cls, state: bytes) -> Self:
+        """A tracker that goes on where `snapshot` was taken.
+
+        Raises:
+            ValueError: `state` was written by another version.
+        """
+
+
+class Smoother(Protocol):
+    """Solves a whole incident with everything known."""
+
+    def smooth(self, readings: Sequence[AnyReading]) -> dict[str, list[TrackPoint]]:
+        """Every node's track, a point at each whole second from its first to its last reading."""

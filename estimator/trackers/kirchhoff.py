@@ -1,0 +1,104 @@
+"""The default tracker: paper A's Kirchhoff state with headings, biases, scales and path loss as states.
+
+A responder has position, heading error ψ, gyro bias β and step scale s; a ranging technology has scale and
+bias; radio has P0 and n; static nodes have positions. Section numbers of estimation.md stand beside the
+code in `estimator.fusion`.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Self
+
+import msgspec
+
+from estimator.estimate import NodeEstimate, Notice, Relative
+from estimator.fusion import report
+from estimator.fusion.encode import FusionRecord, record_of, state_of
+from estimator.fusion.state import FusionState
+from estimator.fusion.tick import flush
+from estimator.graph.dense import Array
+from estimator.measurements import AnyReading
+from estimator.trackers.base import TrackerSettings
+from estimator.trackers.lag import Lag, LagRecord
+
+VERSION = 1
+
+
+class _Snapshot(msgspec.Struct, frozen=True, array_like=True):
+    version: int
+    settings: TrackerSettings
+    lag: LagRecord
+    fusion: list[FusionRecord]
+
+
+class _Version(msgspec.Struct, frozen=True, array_like=True):
+    version: int
+
+
+class KirchhoffTracker:
+    """Folds readings into the Kirchhoff state; see `estimator.trackers.base.Tracker`."""
+
+    def __init__(self, settings: TrackerSettings | None = None) -> None:
+        self.settings = settings or TrackerSettings()
+        self._lag = Lag(self.settings.lag_s, FusionState(self.settings.origin_wgs84))
+        self._shown: tuple[FusionState, Array] | None = None
+
+    def fold(self, readings: Sequence[AnyReading]) -> None:
+        """Fold readings, in any order of epochs; those within the lag lose no accuracy by being late.
+
+        The work is done when something is asked for, so folding batch by batch costs no more than at once.
+        """
+        self._lag.add(readings)
+        self._shown = None
+
+    def _picture(self) -> tuple[FusionState, Array]:
+        """The state to be shown and its covariance; what waits for a displacement is held against it here."""
+        if self._shown is None:
+            state = self._lag.state().copy()
+            flush(state)
+            self._shown = state, state.graph.covariance()
+        return self._shown
+
+    def estimates(self) -> list[NodeEstimate]:
+        """Every node ever introduced, in order of introduction."""
+        return report.estimates(*self._picture())
+
+    def relative(self, a: str, b: str) -> Relative | None:
+        """Where `b` is relative to `a`, from their joint covariance; None where either is undecided.
+
+        Raises:
+            KeyError: a node is not known.
+        """
+        return report.relative(*self._picture(), a, b)
+
+    def take_notices(self) -> list[Notice]:
+        """What was noticed since the last call."""
+        return self._lag.take_notices()
+
+    def counts(self) -> Mapping[str, int]:
+        """How many readings were received, fused, not fused, weighed as outliers, and too late."""
+        return {"received": self._lag.received, **self._lag.state().counts, "too_late": self._lag.too_late}
+
+    def snapshot(self) -> bytes:
+        """The oldest state that late readings may need, and all readings after it; exact to the last bit."""
+        lag, states = self._lag.record()
+        return msgspec.msgpack.encode(_Snapshot(VERSION, self.settings, lag, [record_of(s) for s in states]))
+
+    @classmethod
+    def restore(cls, state: bytes) -> Self:
+        """A tracker that goes on where `snapshot` was taken.
+
+        Raises:
+            ValueError: `state` was written by another version, or is no snapshot.
+        """
+        try:
+            version = msgspec.msgpack.decode(state, type=_Version).version
+            if version != VERSION:
+                raise ValueError(
+                    f"the snapshot is of version {version}, this tracker reads {VERSION}: fold the log anew"
+                )
+            snapshot = msgspec.msgpack.decode(state, type=_Snapshot)
+        except msgspec.DecodeError as error:
+            raise ValueError(f"this is no snapshot of a Kirchhoff tracker: {error}") from error
+        tracker = cls(snapshot.settings)
+        tracker._lag = Lag.of(snapshot.settings.lag_s, snapshot.lag, [state_of(r) for r in snapshot.fusion])
+        return tracker

@@ -1,0 +1,185 @@
+"""Late and out-of-order readings: the filter is rolled back to before them and folds again.
+
+The estimates are a function of the set of readings inside the lag, not of the order in which they arrived:
+each tick is folded from the state before it and its own readings in canonical order. Folding happens when
+something is asked for, so many batches cost one pass.
+"""
+
+from bisect import bisect_left, insort
+from collections.abc import Sequence
+from typing import Self
+
+import msgspec
+
+from estimator.estimate import Notice
+from estimator.fusion.order import Entry, end_of, entry, key, tick_of
+from estimator.fusion.state import FusionState
+from estimator.fusion.tick import fold_tick, names_of
+from estimator.measurements import AnyReading
+
+SPACING_S = ((2.0, 0.0), (8.0, 1.0), (32.0, 4.0), (float("inf"), 16.0))
+"""Up to each age, checkpoints are kept so far apart: a reading late by x is folded anew over about x, no
+more."""
+
+
+class LagRecord(msgspec.Struct, frozen=True, array_like=True):
+    """`Lag` in plain values, but for its states: the oldest and the newest one are kept beside it.
+
+    Attributes:
+        newest_t: see `Lag`.
+        too_late: see `Lag`.
+        received: see `Lag`.
+        readings: readings of each tick.
+        checkpoints: tick of each state kept.
+        notices: noticed in each tick.
+        given: notices of each tick that were taken.
+        loose: notices not taken yet that belong to no tick.
+    """
+
+    newest_t: float | None
+    too_late: int
+    received: int
+    readings: list[tuple[int, list[AnyReading]]]
+    checkpoints: list[int]
+    notices: dict[int, list[Notice]]
+    given: dict[int, list[Notice]]
+    loose: list[Notice]
+
+
+class Lag:
+    """Readings of the last `lag_s` in ticks, and states of the filter to roll back to.
+
+    Attributes:
+        lag_s: readings later than this behind the newest epoch are counted, not fused (s).
+        newest_t: newest epoch so far; None before the first reading.
+        too_late: readings that came too late.
+        received: all readings.
+    """
+
+    def __init__(self, lag_s: float, state: FusionState) -> None:
+        self.lag_s = lag_s
+        self.newest_t: float | None = None
+        self.too_late = 0
+        self.received = 0
+        self._ticks: list[int] = []
+        self._entries: dict[int, list[Entry]] = {}
+        self._checkpoints: list[tuple[int, FusionState]] = [(-1, state)]
+        self._folded = -1
+        self._notices: dict[int, list[Notice]] = {}
+        self._given: dict[int, list[Notice]] = {}
+        self._loose: list[Notice] = []
+
+    @classmethod
+    def of(cls, lag_s: float, record: LagRecord, states: Sequence[FusionState]) -> Self:
+        """The lag that a record and its states were made of."""
+        lag = cls(lag_s, states[0])
+        lag.newest_t, lag.too_late, lag.received = record.newest_t, record.too_late, record.received
+        lag._ticks = [tick for tick, _ in record.readings]
+        lag._entries = {tick: [entry(r) for r in readings] for tick, readings in record.readings}
+        lag._checkpoints = list(zip(record.checkpoints, states, strict=True))
+        lag._folded = record.checkpoints[-1]
+        lag._notices, lag._given, lag._loose = record.notices, record.given, record.loose
+        return lag
+
+    def record(self) -> tuple[LagRecord, list[FusionState]]:
+        """A record of everything, and the states that belong to it.
+
+        Only the oldest and the newest checkpoint go in: those between are folded anew when they are needed.
+        """
+        self.state()
+        checkpoints = (
+            self._checkpoints if len(self._checkpoints) < 3 else [self._checkpoints[0], self._checkpoints[-1]]
+        )
+        record = LagRecord(
+            self.newest_t,
+            self.too_late,
+            self.received,
+            [(tick, [e.reading for e in self._entries[tick]]) for tick in self._ticks],
+            [tick for tick, _ in checkpoints],
+            self._notices,
+            self._given,
+            self._loose,
+        )
+        return record, [state for _, state in checkpoints]
+
+    def add(self, readings: Sequence[AnyReading]) -> None:
+        """Take readings in; those beyond the lag are counted and noticed."""
+        late: dict[str, list[AnyReading]] = {}
+        for reading in sorted(readings, key=lambda r: r.t):
+            self.received += 1
+            if self.newest_t is not None and reading.t < self.newest_t - self.lag_s:
+                self.too_late += 1
+                late.setdefault(names_of(reading)[0], []).append(reading)
+                continue
+            self.newest_t = reading.t if self.newest_t is None else max(self.newest_t, reading.t)
+            tick = tick_of(reading.t)
+            if tick not in self._entries:
+                self._entries[tick] = []
+                insort(self._ticks, tick)
+            self._entries[tick].append(entry(reading))
+            if tick <= self._folded:
+                self._roll_back(tick)
+        for node, missed in late.items():
+            text = f"{len(missed)} readings came more than {self.lag_s:g} s late and are not fused"
+            self._loose.append(Notice(code="too_late", t=missed[-1].t, node=node, text=text))
+
+    def _roll_back(self, tick: int) -> None:
+        while self._checkpoints[-1][0] >= tick:
+            self._checkpoints.pop()
+        self._folded = self._checkpoints[-1][0]
+
+    def state(self) -> FusionState:
+        """The filter after all readings so far; not to be changed."""
+        first = bisect_left(self._ticks, self._folded + 1)
+        for tick in self._ticks[first:]:
+            before = self._checkpoints[-1][1]
+            after = before.copy()
+            in_order = [e.reading for e in sorted(self._entries[tick], key=key)]
+            self._notices[tick] = fold_tick(after, end_of(tick), in_order)
+            self._checkpoints.append((tick, after))
+            self._folded = tick
+            self._thin(tick)
+        self._commit()
+        return self._checkpoints[-1][1]
+
+    def _thin(self, newest: int) -> None:
+        """Leave checkpoints out as they age; the two newest always stay."""
+        kept = self._checkpoints[-2:]
+        for tick, state in reversed(self._checkpoints[:-2]):
+            age = end_of(newest) - end_of(tick)
+            spacing = next(s for limit, s in SPACING_S if age <= limit)
+            if end_of(kept[0][0]) - end_of(tick) >= spacing or tick == self._checkpoints[0][0]:
+                kept.insert(0, (tick, state))
+        self._checkpoints = kept
+
+    def _commit(self) -> None:
+        """Forget readings that nothing can come before any more, and the checkpoints under them."""
+        if self.newest_t is None:
+            return
+        horizon = tick_of(self.newest_t - self.lag_s)
+        base = bisect_left(self._checkpoints, horizon, key=lambda c: c[0]) - 1
+        if base <= 0:
+            return
+        del self._checkpoints[:base]
+        done = bisect_left(self._ticks, self._checkpoints[0][0] + 1)
+        for tick in self._ticks[:done]:
+            del self._entries[tick]
+            self._loose.extend(self._fresh(tick))
+            self._notices.pop(tick, None)
+            self._given.pop(tick, None)
+        del self._ticks[:done]
+
+    def _fresh(self, tick: int) -> list[Notice]:
+        given = self._given.get(tick, [])
+        return [n for n in self._notices.get(tick, []) if n not in given]
+
+    def take_notices(self) -> list[Notice]:
+        """What was noticed since the last call; folding a tick anew does not repeat what was said of it."""
+        self.state()
+        taken, self._loose = self._loose, []
+        for tick in self._ticks:
+            fresh = self._fresh(tick)
+            if fresh:
+                taken.extend(fresh)
+                self._given.setdefault(tick, []).extend(fresh)
+        return taken

@@ -1,0 +1,44 @@
+"""Noise that is learned, and readings that share an error."""
+
+import numpy as np
+import pytest
+
+from estimator.fusion.noise import LearnedNoise, Link, link_sigma
+
+
+def test_the_learned_factor_follows_the_errors_that_come_in() -> None:
+    chance = np.random.default_rng(1)
+    noise = LearnedNoise()
+    for error in chance.normal(0.0, 1.7, 2000).tolist():
+        noise = noise.with_errors(1.0, error**2, 0.0, 0.0)
+    assert noise.factor == pytest.approx(1.7, rel=0.1)
+
+
+def test_the_shared_part_of_the_noise_is_told_by_successive_errors() -> None:
+    chance = np.random.default_rng(2)
+    noise, before, common = LearnedNoise(), 0.0, 0.0
+    for k in range(4000):
+        common = float(chance.normal(0.0, np.sqrt(0.6))) if k % 40 == 0 else common
+        error = common + chance.normal(0.0, np.sqrt(0.4))
+        noise = noise.with_errors(1.0, error**2, 1.0, error * before)
+        before = error
+    assert noise.shared == pytest.approx(0.6, abs=0.2)
+
+
+def test_alike_readings_are_together_worth_no_more_than_their_common_error_allows() -> None:
+    noise = LearnedNoise(count=100.0, squares=100.0, pairs=100.0, products=50.0)
+    worth = sum(link_sigma(noise, 1.0, float(k)) ** -2 for k in range(1, 200))
+    assert worth == pytest.approx(199.0 / (0.5 + 199.0 * 0.5), rel=1e-6)
+
+
+def test_independent_readings_keep_their_full_worth() -> None:
+    noise = LearnedNoise(count=100.0, squares=100.0, pairs=100.0, products=0.0)
+    assert link_sigma(noise, 0.3, 50.0) == pytest.approx(0.3)
+
+
+def test_a_link_forgets_its_error_once_an_end_has_walked_a_room_on() -> None:
+    link = Link(0.0, 0.0)
+    for second in range(1, 10):
+        link = link.next(float(second), 0.0)
+    assert link.alike == pytest.approx(10.0, rel=0.1)
+    assert link.next(10.0, 30.0).alike == pytest.approx(1.0, abs=0.01)

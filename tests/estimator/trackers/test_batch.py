@@ -1,0 +1,91 @@
+"""The smoothed view: a whole incident solved with everything known."""
+
+import math
+import random
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from estimator.evaluate import errors, full_covariance
+from estimator.measurements import AnyReading
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.drop import Drop
+from estimator.measurements.node import Node
+from estimator.measurements.position import Position
+from estimator.simulate import paper_a
+from estimator.trackers.batch import BatchSmoother
+from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.arbitrary import readings
+from tests.estimator.walks import two_responders
+
+
+@settings(max_examples=120, deadline=None)
+@given(st.lists(readings, max_size=40))
+def test_any_valid_readings_give_finite_tracks(anything: list[AnyReading]) -> None:
+    for points in BatchSmoother().smooth(anything).values():
+        assert np.isfinite([p.position_m for p in points]).all()
+        assert np.isfinite([p.covariance_m2 for p in points]).all()
+
+
+def test_the_order_of_the_readings_does_not_matter() -> None:
+    walk = two_responders(40)
+    shuffled = walk[:]
+    random.Random(5).shuffle(shuffled)
+    assert BatchSmoother().smooth(shuffled) == BatchSmoother().smooth(walk)
+
+
+def test_a_track_has_a_point_at_each_whole_second_from_first_to_last_reading() -> None:
+    walk = [r for r in two_responders(40) if r.t >= 0.0]
+    tracks = BatchSmoother().smooth(walk)
+    assert [p.t for p in tracks["ff1"]] == [float(t) for t in range(41)]
+    assert [p.t for p in tracks["base"]] == [float(t) for t in range(41)]
+    assert tracks["b10"][0].t == 11.0
+
+
+def test_a_linear_walk_between_two_fixes_is_the_least_squares_line() -> None:
+    """Displacements of equal noise between two exact fixes share their misfit evenly."""
+    walk: list[AnyReading] = [
+        Node(t=0.0, node="ff1", role="responder", heading_sigma_rad=0.001),
+        Position(t=0.0, node="ff1", position_m=(0.0, 0.0, 0.0), sigma_m=(0.01, 0.01, 0.01)),
+        Position(t=10.0, node="ff1", position_m=(10.0, 0.0, 1.0), sigma_m=(0.01, 0.01, 0.01)),
+    ]
+    walk += [
+        Displacement(t=float(k), from_t=k - 1.0, node="ff1", delta_m=(1.0, 0.0, 0.0), sigma_m=0.5)
+        for k in range(1, 11)
+    ]
+    points = BatchSmoother().smooth(walk)["ff1"]
+    heights = [p.position_m[2] for p in points]
+    assert np.abs(np.array(heights) - np.arange(11) / 10.0).max() < 0.01
+    middle = points[5].covariance_m2[5]
+    assert abs(middle - 0.5**2 * 10.0 / 4.0) < 0.05
+
+
+def test_a_breadcrumb_dropped_again_elsewhere_has_a_place_for_each_drop() -> None:
+    walk: list[AnyReading] = [Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0))]
+    walk += [Displacement(t=float(k), node="ff1", delta_m=(1.0, 0.0, 0.0)) for k in range(1, 31)]
+    walk += [Drop(t=10.0, node="b1", by="ff1"), Drop(t=20.0, node="b1", by="ff1")]
+    east = {p.t: p.position_m[0] for p in BatchSmoother().smooth(walk)["b1"]}
+    assert abs(east[10.0] - 10.0) < 0.2
+    assert abs(east[20.0] - 20.0) < 0.2
+
+
+def test_paper_a_scenario_smoothed_is_better_than_live_and_honest() -> None:
+    live, smoothed = [], []
+    for seed in range(3):
+        scenario = paper_a.build(seed)
+        truth = scenario.truth["ff1"]
+        points = BatchSmoother().smooth(scenario.readings)["ff1"]
+        true = truth.at(np.array([p.t for p in points]))
+        covariance = full_covariance(np.array([p.covariance_m2 for p in points]))
+        smoothed.append(errors(np.array([p.position_m for p in points]), true, covariance, 400.0))
+        tracker, shown = KirchhoffTracker(), []
+        for second in range(int(scenario.duration_s)):
+            tracker.fold([r for r in scenario.readings if second < r.t <= second + 1 or r.t == second == 0])
+            shown += [e for e in tracker.estimates() if e.node == "ff1" and e.position_m is not None]
+        at = truth.at(np.array([e.t for e in shown]))
+        covariance = full_covariance(np.array([e.covariance_m2 for e in shown]))
+        live.append(errors(np.array([e.position_m for e in shown]), at, covariance, 400.0))
+    assert np.mean([e.mean_percent for e in live]) < 0.55
+    assert np.mean([e.mean_percent for e in smoothed]) < 0.20
+    assert math.isfinite(sum(e.nees for e in smoothed))
