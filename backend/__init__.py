@@ -1,0 +1,1 @@
+"""Firethread's service: HTTP, log, sockets, processes."""

@@ -1,0 +1,150 @@
+"""Every refusal that Firethread gives, as one tree, and its form on the wire (RFC 9457).
+
+Problem                     anything that is answered as `application/problem+json`
+├── NotUnderstood    400    the body is no JSON, or not what the route takes
+├── NotAuthenticated 401    no valid access token
+├── NotFound         404    no such incident, node or page
+├── NotAllowed       405    the page does not take this method
+├── Conflict         409    the incident is closed, or what is asked contradicts what is there
+├── TooLarge         413    more readings or bytes than a batch may have
+├── WrongMediaType   415    content type or encoding that is not taken
+├── Invalid          422    a field or parameter outside its bounds
+├── TooBusy          429    the log cannot keep up; come back after `retry_after_s`
+├── Unexpected       500    a defect of ours; the log tells more
+├── Unavailable      503    the log cannot be written, or the estimator is away
+└── TooSlow          504    what was waited for did not come in time
+"""
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+import msgspec
+
+PROBLEM_MEDIA_TYPE = "application/problem+json"
+
+
+class FieldError(msgspec.Struct, frozen=True, omit_defaults=True):
+    """One of several things that are wrong.
+
+    Attributes:
+        code: what it is, for programs.
+        message: what it is and what to do, for people.
+        index: of the reading, where it is one of a batch.
+        field: path of the field.
+    """
+
+    code: str
+    message: str
+    index: int | None = None
+    field: str | None = None
+
+
+class Problem(Exception):  # noqa: N818 - RFC 9457 calls it a problem
+    """A refusal with its status.
+
+    Args:
+        detail: what was wrong, where, and what to do.
+        errors: the single faults, where there are several.
+        retry_after_s: after how long trying again makes sense.
+    """
+
+    status: ClassVar[int] = 500
+    slug: ClassVar[str] = "unexpected"
+    title: ClassVar[str] = "Something went wrong here"
+
+    def __init__(
+        self, detail: str, errors: Sequence[FieldError] = (), *, retry_after_s: int | None = None
+    ) -> None:
+        super().__init__(detail)
+        self.detail = detail
+        self.errors = tuple(errors)
+        self.retry_after_s = retry_after_s
+
+    def body(self) -> bytes:
+        """The problem as JSON bytes."""
+        problem: dict[str, object] = {
+            "type": f"urn:firethread:problem:{self.slug}",
+            "title": self.title,
+            "status": self.status,
+            "detail": self.detail,
+        }
+        if self.errors:
+            problem["errors"] = self.errors
+        return msgspec.json.encode(problem)
+
+    def headers(self) -> dict[str, str]:
+        """The headers that go with it."""
+        headers = {"content-type": PROBLEM_MEDIA_TYPE}
+        if self.retry_after_s is not None:
+            headers["retry-after"] = str(self.retry_after_s)
+        return headers
+
+
+class NotUnderstood(Problem):
+    """The body is no JSON, or not what the route takes."""
+
+    status, slug, title = 400, "not-understood", "The request could not be understood"
+
+
+class NotAuthenticated(Problem):
+    """No valid access token came with the request."""
+
+    status, slug, title = 401, "not-authenticated", "An access token is needed"
+
+    def headers(self) -> dict[str, str]:
+        """The headers that go with it."""
+        return super().headers() | {"www-authenticate": 'Bearer realm="firethread"'}
+
+
+class NotFound(Problem):
+    """There is nothing under that name."""
+
+    status, slug, title = 404, "not-found", "There is nothing under that name"
+
+
+class NotAllowed(Problem):
+    """The page does not take this method."""
+
+    status, slug, title = 405, "method-not-allowed", "The page does not take this method"
+
+
+class Conflict(Problem):
+    """What is asked contradicts what is there."""
+
+    status, slug, title = 409, "conflict", "The request contradicts what is there"
+
+
+class TooLarge(Problem):
+    """More than the limits allow."""
+
+    status, slug, title = 413, "too-large", "The request is too large"
+
+
+class WrongMediaType(Problem):
+    """A content type or encoding that is not taken."""
+
+    status, slug, title = 415, "wrong-media-type", "The content type or encoding is not taken here"
+
+
+class Invalid(Problem):
+    """A field or parameter is missing or outside its bounds."""
+
+    status, slug, title = 422, "invalid", "A field or parameter is not valid"
+
+
+class TooBusy(Problem):
+    """The log cannot keep up."""
+
+    status, slug, title = 429, "too-busy", "The log cannot keep up"
+
+
+class Unavailable(Problem):
+    """A part that the answer needs is away."""
+
+    status, slug, title = 503, "unavailable", "A part that is needed is not available"
+
+
+class TooSlow(Problem):
+    """What was waited for did not come in time."""
+
+    status, slug, title = 504, "too-slow", "What was waited for did not come in time"

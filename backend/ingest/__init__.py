@@ -1,0 +1,1 @@
+"""A gateway's POST: limits, decoding, refusal by index, the durable answer."""

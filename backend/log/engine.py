@@ -1,0 +1,129 @@
+"""Connections to the two databases: everything in which they differ but the statements of the append."""
+
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from sqlite3 import SQLITE_BUSY
+from sqlite3 import Connection as SqliteConnection
+from sqlite3 import OperationalError as SqliteError
+
+import sqlalchemy as sa
+
+from backend.log.base import LogUnreadable, LogUnwritable
+
+BUSY_TIMEOUT_S = 10
+RETRY_UNWRITABLE_S = 5
+PAGE_BYTES = 8_192
+"""Bodies are 1 to 100 kB: at SQLite's own 4 kB large ones took a fifth longer, at 16 kB small ones did."""
+
+CHECKPOINT_PAGES = 2_000
+"""16 MiB of WAL between checkpoints: at a full stream of telemetry one or two a second."""
+
+POSTGRES_CONNECT: Mapping[str, object] = {
+    "connect_timeout": 5,
+    # An acknowledged batch must survive a crash whatever the server's own default; a lock that is never
+    # given back and a network that swallows packets must end in a 503, not in silence.
+    "options": "-c synchronous_commit=on -c lock_timeout=10s -c statement_timeout=60s",
+    "keepalives_idle": 5,
+    "tcp_user_timeout": 10_000,
+}
+
+
+def make_engine(url: str, *, checkpoints: bool = False) -> sa.Engine:
+    """An engine for the log's database.
+
+    Args:
+        url: SQLAlchemy URL, SQLite or Postgres (psycopg 3).
+        checkpoints: SQLite only: its connections move the WAL into the database. Only the process that
+            appends does; SQLite below 3.51.3 may lose pages where two connections checkpoint.
+
+    Raises:
+        ValueError: neither SQLite nor Postgres.
+    """
+    backend = sa.engine.make_url(url).get_backend_name()
+    if backend == "postgresql":
+        return sa.create_engine(url, connect_args=dict(POSTGRES_CONNECT), pool_pre_ping=True)
+    if backend != "sqlite":
+        raise ValueError(f"the log is kept in SQLite or Postgres, not in {backend!r}: check --database")
+    engine = sa.create_engine(
+        url, connect_args={"timeout": BUSY_TIMEOUT_S, "check_same_thread": False, "cached_statements": 512}
+    )
+
+    @sa.event.listens_for(engine, "connect")
+    def on_connect(connection: SqliteConnection, _record: object) -> None:
+        connection.isolation_level = None  # transactions are begun by us, not by the driver
+        # Takes effect where the database is still empty, and not once it has a WAL.
+        connection.execute(f"PRAGMA page_size={PAGE_BYTES}")
+        _write_ahead(connection)
+        for pragma in (
+            "synchronous=FULL",
+            "mmap_size=0",
+            "journal_size_limit=67108864",
+            f"wal_autocheckpoint={CHECKPOINT_PAGES if checkpoints else 0}",
+        ):
+            connection.execute(f"PRAGMA {pragma}")
+
+    @sa.event.listens_for(engine, "begin")
+    def on_begin(connection: sa.Connection) -> None:
+        # A deferred transaction that turns into a writing one is refused where another wrote meanwhile.
+        writes = connection.get_execution_options().get("writes", False)
+        connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+
+    return engine
+
+
+AWAY = (sa.exc.OperationalError, sa.exc.InterfaceError, sa.exc.InternalError, sa.exc.TimeoutError)
+"""What SQLAlchemy raises where the database fails, and not what was asked of it."""
+
+
+def _write_ahead(connection: SqliteConnection) -> None:
+    """Have the database keep a WAL; SQLite itself does not wait where several open a new one at once."""
+    until = time.monotonic() + BUSY_TIMEOUT_S
+    while True:
+        try:
+            connection.execute("PRAGMA journal_mode=WAL")
+        except SqliteError as error:
+            if error.sqlite_errorcode != SQLITE_BUSY or time.monotonic() > until:
+                raise
+            time.sleep(0.02)
+        else:
+            return
+
+
+@contextmanager
+def writing(engine: sa.Engine) -> Iterator[sa.Connection]:
+    """A transaction that writes: SQLite's write lock is taken at its start.
+
+    Raises:
+        LogUnwritable: the database failed; the transaction is rolled back.
+    """
+    try:
+        with engine.execution_options(writes=True).begin() as connection:
+            yield connection
+    except AWAY as error:
+        # After an input or output error a connection may be of no more use: the next one is new.
+        engine.dispose()
+        raise LogUnwritable(
+            f"The database cannot be written now ({_cause(error)}). Nothing is acknowledged: send it later.",
+            retry_after_s=RETRY_UNWRITABLE_S,
+        ) from error
+
+
+@contextmanager
+def reading(engine: sa.Engine) -> Iterator[sa.Connection]:
+    """A transaction that reads one consistent state.
+
+    Raises:
+        LogUnreadable: the database failed.
+    """
+    try:
+        with engine.connect() as connection:
+            yield connection
+    except AWAY as error:
+        engine.dispose()
+        raise LogUnreadable(f"The database cannot be read now ({_cause(error)}): try again.") from error
+
+
+def _cause(error: sa.exc.SQLAlchemyError) -> str:
+    lines = str(error.__cause__ or error).splitlines()
+    return lines[0] if lines else type(error).__name__

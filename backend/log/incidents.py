@@ -1,0 +1,132 @@
+"""Incidents in the database: create, read, change."""
+
+import secrets
+import time
+from typing import Any
+
+import sqlalchemy as sa
+
+from backend.errors import Conflict, NotFound
+from backend.log.engine import reading, writing
+from backend.log.incident import Clock, Incident, IncidentSettings, Level, Origin, State
+from backend.log.schema import frames, incidents
+
+_shown = sa.select(
+    incidents,
+    sa.select(sa.func.min(frames.c.second))
+    .where(frames.c.incident == incidents.c.id)
+    .scalar_subquery()
+    .label("first_t"),
+    sa.select(sa.func.max(frames.c.second))
+    .where(frames.c.incident == incidents.c.id)
+    .scalar_subquery()
+    .label("last_t"),
+)
+_BASE32 = "0123456789abcdefghjkmnpqrstvwxyz"
+_RANDOM_BITS = 28
+
+
+def new_incident_id(now: float) -> str:
+    """An identifier that sorts by time and is not guessed: 32 bits of seconds, 28 random ones."""
+    number = int(now) << _RANDOM_BITS | secrets.randbits(_RANDOM_BITS)
+    return "i" + "".join(_BASE32[number >> shift & 31] for shift in range(55, -1, -5))
+
+
+class IncidentStore:
+    """Creates, reads and changes incidents; safe to use from any thread.
+
+    Args:
+        engine: of the log's database.
+    """
+
+    def __init__(self, engine: sa.Engine) -> None:
+        self._engine = engine
+
+    def create(
+        self,
+        name: str,
+        clock: Clock,
+        origin: Origin | None = None,
+        levels: list[Level] | None = None,
+        settings: IncidentSettings | None = None,
+    ) -> Incident:
+        """Store a new, active incident."""
+        now = time.time()
+        incident = Incident(
+            id=new_incident_id(now),
+            name=name,
+            clock=clock,
+            state="active",
+            origin=origin,
+            levels=levels or [],
+            settings=settings or IncidentSettings(),
+            created=now,
+            closed=None,
+            last_seq=0,
+            first_t=None,
+            last_t=None,
+        )
+        with writing(self._engine) as connection:
+            connection.execute(
+                sa.insert(incidents).values(incident.model_dump(exclude={"first_t", "last_t"}))
+            )
+        return incident
+
+    def get(self, incident: str) -> Incident:
+        """One incident.
+
+        Raises:
+            NotFound: there is none of that id.
+        """
+        with reading(self._engine) as connection:
+            return _one(connection, _shown, incident)
+
+    def all(self, state: State | None = None) -> list[Incident]:
+        """All incidents, or those in one state, oldest first."""
+        query = _shown.order_by(incidents.c.created, incidents.c.id)
+        if state is not None:
+            query = query.where(incidents.c.state == state)
+        with reading(self._engine) as connection:
+            return [_incident(row) for row in connection.execute(query)]
+
+    def change(self, incident: str, changes: dict[str, Any]) -> Incident:
+        """Change an incident.
+
+        Args:
+            incident: its id.
+            changes: new values of `name`, `origin`, `levels`, `settings`, `state` (plain data); settings that
+                are not named keep their value.
+
+        Raises:
+            pydantic.ValidationError: the settings contradict those that stay.
+            NotFound: there is none of that id.
+            Conflict: it is closed and would be opened again.
+        """
+        with writing(self._engine) as connection:
+            # The lock keeps a batch from being numbered while the incident closes.
+            before = _one(connection, _shown.with_for_update(of=incidents), incident)
+            if before.state == "closed" and changes.get("state") == "active":
+                raise Conflict(
+                    f"Incident {incident} is closed and stays so: its log is a finished record. "
+                    "Create a new incident to go on."
+                )
+            if before.state == "active" and changes.get("state") == "closed":
+                changes = changes | {"closed": time.time()}
+            if "settings" in changes:
+                merged = before.settings.model_dump() | changes["settings"]
+                changes = changes | {"settings": IncidentSettings.model_validate(merged).model_dump()}
+            if changes:
+                connection.execute(sa.update(incidents).where(incidents.c.id == incident).values(changes))
+            return _one(connection, _shown, incident)
+
+
+def _one(connection: sa.Connection, query: sa.Select[Any], incident: str) -> Incident:
+    # An id with NUL in it would be refused by Postgres itself, with an error that reads like a defect.
+    row = None if "\x00" in incident else connection.execute(query.where(incidents.c.id == incident)).first()
+    if row is None:
+        raise NotFound(f"There is no incident {incident!r}: GET /api/v1/incidents lists them.")
+    return _incident(row)
+
+
+def _incident(row: sa.Row[Any]) -> Incident:
+    return Incident.model_validate(row._asdict())

@@ -1,0 +1,51 @@
+"""What a deployment may set, each with its default and its reason."""
+
+from pathlib import Path
+
+import msgspec
+
+LINK_TOKEN_VARIABLE = "FIRETHREAD_LINK_TOKEN"  # noqa: S105 - the variable's name, not a secret
+DATABASE_VARIABLE = "FIRETHREAD_DATABASE"
+
+
+class Settings(msgspec.Struct, frozen=True, kw_only=True):
+    """Settings of one `firethread` process.
+
+    Attributes:
+        data: folder of the SQLite database, the access token and nothing else.
+        database: SQLAlchemy URL; None means SQLite under `data`.
+        host: address that the web process listens on.
+        port: its port; 0 picks a free one.
+        open_access: requests need no access token (only on a loopback address).
+        worker: supervise an estimator worker beside the web process.
+        link: `host:port` where web and worker meet; port 0 picks a free one.
+        demo: play the demo incident through the public API.
+        max_readings: readings in a batch; the contract's limit.
+        max_body_bytes: bytes of a batch, after decompression; the contract's limit.
+        queue_bytes: bodies waiting for the log before 429 is answered: a second of a fast disk.
+        shown_hz: how often a frame may be pushed, per incident; the contract's limit.
+    """
+
+    data: Path
+    database: str | None = None
+    host: str = "127.0.0.1"
+    port: int = 8000
+    open_access: bool = False
+    worker: bool = True
+    link: str = "127.0.0.1:0"
+    demo: bool = False
+    max_readings: int = 10_000
+    max_body_bytes: int = 8 * 1024 * 1024
+    queue_bytes: int = 64 * 1024 * 1024
+    shown_hz: float = 10.0
+
+    @property
+    def database_url(self) -> str:
+        """The SQLAlchemy URL of the log."""
+        if self.database is None:
+            return f"sqlite:///{self.data.resolve() / 'firethread.db'}"
+        # Engineers write the scheme of libpq; the driver is ours to choose.
+        for scheme in ("postgresql://", "postgres://"):
+            if self.database.startswith(scheme):
+                return "postgresql+psycopg://" + self.database.removeprefix(scheme)
+        return self.database

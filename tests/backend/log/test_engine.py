@@ -1,0 +1,46 @@
+from pathlib import Path
+
+import pytest
+import sqlalchemy as sa
+
+from backend.log.base import LogUnreadable, LogUnwritable
+from backend.log.engine import make_engine, reading, writing
+
+
+def pragma(engine: sa.Engine, name: str) -> object:
+    with reading(engine) as connection:
+        return connection.exec_driver_sql(f"PRAGMA {name}").scalar()
+
+
+def test_sqlite_keeps_what_it_acknowledged_through_a_loss_of_power(tmp_path: Path) -> None:
+    engine = make_engine(f"sqlite:///{tmp_path / 'x.db'}")
+    assert pragma(engine, "journal_mode") == "wal"
+    assert pragma(engine, "synchronous") == 2
+    assert pragma(engine, "mmap_size") in {0, None}
+
+
+def test_only_the_process_that_appends_checkpoints(tmp_path: Path) -> None:
+    url = f"sqlite:///{tmp_path / 'x.db'}"
+    assert pragma(make_engine(url), "wal_autocheckpoint") == 0
+    assert pragma(make_engine(url, checkpoints=True), "wal_autocheckpoint") > 0  # type: ignore[operator]
+
+
+def test_postgres_commits_synchronously_whatever_its_own_default(postgres_url: str) -> None:
+    engine = make_engine(postgres_url)
+    with reading(engine) as connection:
+        assert connection.exec_driver_sql("SHOW synchronous_commit").scalar() == "on"
+    engine.dispose()
+
+
+def test_a_database_that_cannot_be_reached_is_said_to_be_away(tmp_path: Path) -> None:
+    for url in (f"sqlite:///{tmp_path}/no/such/folder/x.db", "postgresql+psycopg://127.0.0.1:1/nothing"):
+        engine = make_engine(url)
+        with pytest.raises(LogUnwritable), writing(engine):
+            pass
+        with pytest.raises(LogUnreadable), reading(engine):
+            pass
+
+
+def test_another_kind_of_database_is_refused() -> None:
+    with pytest.raises(ValueError, match="SQLite or Postgres"):
+        make_engine("mysql://127.0.0.1/x")
