@@ -1,0 +1,1 @@
+"""How processes work together: leases, wake-ups, fan-out."""

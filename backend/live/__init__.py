@@ -1,0 +1,1 @@
+"""Frames: how a picture is presented, kept and pushed to screens."""

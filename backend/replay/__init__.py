@@ -1,0 +1,1 @@
+"""An incident shown again as it was."""

@@ -1,0 +1,108 @@
+"""`WS /api/v1/incidents/{incident}/replay`: the past, in the messages of the live socket."""
+
+import asyncio
+import contextlib
+import time
+from typing import Annotated
+
+import msgspec
+from fastapi import APIRouter, Query, WebSocket, WebSocketDisconnect
+
+from backend.errors import NotFound, Unavailable
+from backend.live.frame import ErrorMessage
+from backend.live.socket import NO_SUCH_INCIDENT, TRY_AGAIN_LATER
+from backend.log.base import LogReader
+from backend.log.incidents import IncidentStore
+from backend.replay.clock import ReplayClock
+from backend.replay.control import FASTEST, LATEST_T, SLOWEST, apply, understand
+from backend.replay.player import Player
+
+STEP_S = 0.1
+BEAT_S = 1.0
+
+Moment = Annotated[float | None, Query(ge=0.0, le=LATEST_T, allow_inf_nan=False)]
+
+
+def replay_router(incidents: IncidentStore, reader: LogReader) -> APIRouter:
+    """The route.
+
+    Args:
+        incidents: settings and levels.
+        reader: of the recorded rows.
+    """
+    router = APIRouter(tags=["picture"])
+
+    @router.websocket("/api/v1/incidents/{incident}/replay")
+    async def replay(
+        socket: WebSocket,
+        incident: str,
+        start: Annotated[float | None, Query(alias="from", ge=0.0, le=LATEST_T, allow_inf_nan=False)] = None,
+        to: Moment = None,
+        speed: Annotated[float, Query(ge=SLOWEST, le=FASTEST, allow_inf_nan=False)] = 1.0,
+    ) -> None:
+        """First a whole frame, then deltas and heartbeats, in incident time."""
+        await socket.accept()
+        try:
+            known = await asyncio.to_thread(incidents.get, incident)
+            span = await asyncio.to_thread(reader.frame_span, incident)
+        except NotFound as problem:
+            await socket.close(NO_SUCH_INCIDENT, problem.title)
+            return
+        except Unavailable as problem:
+            await socket.close(TRY_AGAIN_LATER, problem.title)
+            return
+        first, last = span or (0, 0)
+        clock = ReplayClock(
+            float(first) if start is None else start,
+            float(last) if to is None else to,
+            speed,
+            time.monotonic(),
+        )
+        await _play(socket, clock, Player(reader, known, clock))
+
+    return router
+
+
+async def _play(socket: WebSocket, clock: ReplayClock, player: Player) -> None:
+    """Show and listen until the viewer leaves."""
+    listening = asyncio.create_task(_listen(socket, clock, player))
+    try:
+        with contextlib.suppress(WebSocketDisconnect):
+            await _show(socket, player, listening)
+    finally:
+        listening.cancel()
+        with contextlib.suppress(asyncio.CancelledError, WebSocketDisconnect):
+            await listening
+
+
+async def _show(socket: WebSocket, player: Player, listening: asyncio.Task[None]) -> None:
+    beat_at = 0.0
+    while not listening.done():
+        wall_s = time.monotonic()
+        try:
+            message = await asyncio.to_thread(player.message, wall_s)
+        except Unavailable as problem:
+            await socket.close(TRY_AGAIN_LATER, problem.title)
+            return
+        if message is not None:
+            await socket.send_text(msgspec.json.encode(message).decode())
+        if wall_s >= beat_at:
+            beat_at = wall_s + BEAT_S
+            await socket.send_text(msgspec.json.encode(player.beat(wall_s)).decode())
+        # A viewer that takes its messages slowly is not behind: the next one is of the moment it is made.
+        await asyncio.wait([listening], timeout=STEP_S)
+
+
+async def _listen(socket: WebSocket, clock: ReplayClock, player: Player) -> None:
+    while True:
+        received = await socket.receive()
+        if received["type"] == "websocket.disconnect":
+            return
+        try:
+            control = understand(received.get("text") or received.get("bytes") or b"")
+        except ValueError as error:
+            await socket.send_text(msgspec.json.encode(ErrorMessage(detail=str(error))).decode())
+            continue
+        apply(control, clock, time.monotonic())
+        if control.seek is not None:
+            player.sought()

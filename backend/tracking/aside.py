@@ -1,0 +1,67 @@
+"""What the process for heavy sums does: reads the log and a stored state, and answers in plain values."""
+
+from backend.errors import NotFound, Unavailable
+from backend.log.engine import make_engine
+from backend.log.read import SqlLogReader
+from backend.tracking.fold import IncidentFold, OtherState
+from backend.tracking.heads import Head
+from backend.tracking.reading import read_block
+from estimator import trackers
+from estimator.estimate import Relative, TrackPoint
+from estimator.measurements import AnyReading
+
+Smoothed = dict[str, list[TrackPoint]]
+
+
+def smooth_log(database_url: str, head: Head) -> Smoothed:
+    """Every node's track from the whole log.
+
+    Args:
+        database_url: SQLAlchemy URL of the log.
+        head: the incident; entries after its `last_seq` are left out.
+
+    Raises:
+        LogUnreadable: the database failed.
+    """
+    engine = make_engine(database_url)
+    try:
+        readings = _readings(SqlLogReader(engine), head)
+    finally:
+        engine.dispose()
+    return trackers.smoother(head.tracker, head.settings).smooth(readings)
+
+
+def _readings(reader: SqlLogReader, head: Head) -> list[AnyReading]:
+    readings: list[AnyReading] = []
+    seq = 0
+    while seq < head.last_seq and (block := read_block(reader, head.incident, seq)):
+        for batch, of_batch in block:
+            if batch.seq <= head.last_seq:
+                readings += of_batch
+        seq = block[-1][0].seq
+    return readings
+
+
+def relative_from_state(database_url: str, head: Head, a: str, b: str) -> Relative | None:
+    """Where `b` is relative to `a` after the newest stored state; None where either is undecided.
+
+    Raises:
+        NotFound: a node is not known.
+        Unavailable: there is no state of this version.
+        LogUnreadable: the database failed.
+    """
+    engine = make_engine(database_url)
+    try:
+        snapshot = SqlLogReader(engine).snapshot(head.incident)
+    finally:
+        engine.dispose()
+    if snapshot is None and head.last_seq == 0:
+        raise NotFound(f"No reading has named {a!r} or {b!r} yet.")
+    if snapshot is None:
+        raise Unavailable("Nothing of this incident has been estimated yet: start an estimator worker.")
+    try:
+        return IncidentFold.restore(snapshot.state, head.tracker, head.settings).relative(a, b)
+    except OtherState as why:
+        raise Unavailable(f"The stored state cannot be used ({why}): start an estimator worker.") from why
+    except KeyError as error:
+        raise NotFound(f"There is no node {error.args[0]!r} in this incident.") from error

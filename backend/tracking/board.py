@@ -1,0 +1,185 @@
+"""What is shown but not fused: names, crews, vitals, alarms, notices. A pure fold over readings."""
+
+from collections.abc import Iterable
+from typing import Literal
+
+import msgspec
+
+from backend.live.record import PictureRecord, RecordAlarm, RecordNode, RecordNotice
+from estimator.estimate import NodeEstimate, Notice
+from estimator.measurements import Alarm, AnyReading, Node, Status
+from estimator.measurements.status import AlarmKind
+
+REPEAT_S = 30.0
+"""Units repeat an alarm while it sounds: a raise so soon after the last one is the same alarm."""
+
+NOTICES_KEPT = 32
+
+
+class NodeBoard(msgspec.Struct):
+    """What a node has told of itself.
+
+    Attributes:
+        t: epoch of its newest status or alarm, Unix seconds.
+        callsign: how it is called by radio.
+        crew: its crew.
+        battery: charge, 0 to 1.
+        air_bar: pressure left in the air cylinder (bar).
+        temperature_c: temperature (°C).
+        motionless_s: for how long it has not moved (s).
+        status_t: epoch of the newest status, Unix seconds.
+        moved_t: when it was last noticed to have been moved, Unix seconds.
+    """
+
+    t: float
+    callsign: str | None = None
+    crew: str | None = None
+    battery: float | None = None
+    air_bar: float | None = None
+    temperature_c: float | None = None
+    motionless_s: float | None = None
+    status_t: float | None = None
+    moved_t: float | None = None
+
+
+class AlarmEntry(msgspec.Struct):
+    """An alarm of a node, also after it was cleared.
+
+    Attributes:
+        state: what it is now.
+        t: when it was raised, Unix seconds.
+        repeated_t: when it was last raised again, Unix seconds.
+        text: what was said.
+    """
+
+    state: Literal["raised", "acknowledged", "cleared"]
+    t: float
+    repeated_t: float
+    text: str | None = None
+
+
+class Board(msgspec.Struct):
+    """Everything that is shown but not fused, of one incident.
+
+    Attributes:
+        nodes: what each node has told of itself.
+        alarms: alarms of each node, by kind.
+        notices: the newest notice of each code and node, oldest first.
+    """
+
+    nodes: dict[str, NodeBoard] = msgspec.field(default_factory=dict)
+    alarms: dict[str, dict[AlarmKind, AlarmEntry]] = msgspec.field(default_factory=dict)
+    notices: list[RecordNotice] = msgspec.field(default_factory=list)
+
+    def fold(self, readings: Iterable[AnyReading]) -> None:
+        """Take readings in, in their order; those of other kinds change nothing."""
+        for reading in readings:
+            match reading:
+                case Status():
+                    self._told(reading)
+                case Alarm():
+                    self._alarmed(reading)
+                case Node():
+                    self._named(reading)
+
+    def notice(self, notices: Iterable[Notice]) -> None:
+        """Take in what the tracker has noticed; a notice replaces the last of its code and node."""
+        for notice in notices:
+            key = (notice.code, notice.node)
+            self.notices = [kept for kept in self.notices if (kept.code, kept.node) != key]
+            self.notices.append(
+                RecordNotice(code=notice.code, t=notice.t, text=notice.text, node=notice.node)
+            )
+            if notice.code == "node_moved" and notice.node is not None:
+                self._node(notice.node, notice.t).moved_t = notice.t
+        del self.notices[:-NOTICES_KEPT]
+
+    def _node(self, node: str, t: float) -> NodeBoard:
+        known = self.nodes.get(node)
+        if known is None:
+            known = self.nodes[node] = NodeBoard(t=t)
+        known.t = max(known.t, t)
+        return known
+
+    def _named(self, reading: Node) -> None:
+        known = self._node(reading.node, reading.t)
+        known.callsign = reading.callsign if reading.callsign is not None else known.callsign
+        known.crew = reading.crew if reading.crew is not None else known.crew
+
+    def _told(self, reading: Status) -> None:
+        known = self._node(reading.node, reading.t)
+        if known.status_t is not None and reading.t < known.status_t:
+            return  # came late: a newer one is shown
+        known.status_t = reading.t
+        for name in ("battery", "air_bar", "temperature_c", "motionless_s"):
+            value = getattr(reading, name)
+            if value is not None:
+                setattr(known, name, value)
+
+    def _alarmed(self, reading: Alarm) -> None:
+        self._node(reading.node, reading.t)
+        kinds = self.alarms.setdefault(reading.node, {})
+        known = kinds.get(reading.alarm)
+        if reading.state == "raised":
+            if known is None or reading.t > known.repeated_t:
+                kinds[reading.alarm] = _raised(known, reading)
+            return
+        # Acknowledging and clearing count in the order of the log, not by their epochs: a tablet whose clock
+        # is behind must still be able to acknowledge.
+        if known is None:
+            known = kinds[reading.alarm] = AlarmEntry(reading.state, reading.t, reading.t)
+        known.state = reading.state
+        known.text = reading.text if reading.text is not None else known.text
+
+    def picture(self, estimates: Iterable[NodeEstimate], newest_t: float | None) -> PictureRecord:
+        """The record of what the tracker knows and what stands here."""
+        nodes = [_joined(estimate, self.nodes.get(estimate.node)) for estimate in estimates]
+        tracked = {node.node for node in nodes}
+        for name, known in self.nodes.items():
+            if name not in tracked:
+                # Someone in trouble is shown even where the tracker has nothing to say of it.
+                nodes.append(_joined(NodeEstimate(node=name, role="responder", t=known.t), known))
+        standing = [
+            RecordAlarm(node=node, alarm=kind, state=entry.state, t=entry.t, text=entry.text)
+            for node, kinds in self.alarms.items()
+            for kind, entry in kinds.items()
+            if entry.state != "cleared"
+        ]
+        standing.sort(key=lambda alarm: (alarm.t, alarm.node, alarm.alarm))
+        return PictureRecord(
+            t=newest_t, nodes=tuple(nodes), alarms=tuple(standing), notices=tuple(self.notices)
+        )
+
+
+def _raised(known: AlarmEntry | None, reading: Alarm) -> AlarmEntry:
+    """The entry after an alarm was raised, or raised again."""
+    if known is None or known.state == "cleared":
+        return AlarmEntry("raised", reading.t, reading.t, reading.text)
+    still_sounding = reading.t - known.repeated_t <= REPEAT_S
+    new_words = reading.text is not None and reading.text != known.text
+    text = reading.text if reading.text is not None else known.text
+    if known.state == "acknowledged" and (new_words or not still_sounding):
+        return AlarmEntry("raised", reading.t, reading.t, text)
+    return AlarmEntry(known.state, known.t, reading.t, text)
+
+
+def _joined(estimate: NodeEstimate, known: NodeBoard | None) -> RecordNode:
+    told = known or NodeBoard(t=estimate.t)
+    return RecordNode(
+        node=estimate.node,
+        role=estimate.role,
+        t=estimate.t,
+        position_m=estimate.position_m,
+        covariance_m2=estimate.covariance_m2,
+        heading_rad=estimate.heading_rad,
+        heading_sigma_rad=estimate.heading_sigma_rad,
+        speed_mps=estimate.speed_mps,
+        retired=estimate.retired,
+        callsign=told.callsign,
+        crew=told.crew,
+        battery=told.battery,
+        air_bar=told.air_bar,
+        temperature_c=told.temperature_c,
+        motionless_s=told.motionless_s,
+        moved_t=told.moved_t,
+    )

@@ -1,0 +1,292 @@
+"""One incident followed: its log read, folded, published and stored."""
+
+import asyncio
+import contextlib
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor
+from typing import ParamSpec, TypeVar
+
+import structlog
+
+from backend.coordination.base import Answer, Query
+from backend.coordination.lease import Leases
+from backend.live import record
+from backend.live.record import PictureRecord
+from backend.log.base import DerivedWriter, LogReader, LogUnreadable, Snapshot
+from backend.tracking.answering import answer
+from backend.tracking.fold import IncidentFold, OtherState
+from backend.tracking.heads import Head
+from backend.tracking.keeping import Keeper
+from backend.tracking.publication import Publication, Publish
+from backend.tracking.reading import Decoded, read_block
+
+SLICE_S = 0.02
+"""Folding goes on for so long, to the end of a log entry, before other incidents have their turn."""
+
+LONGEST_SLICE_S = 0.1
+"""Within an entry of thousands of readings, others have their turn after so long."""
+
+IDLE_S = 2.0
+"""After so long without news the state is stored, so that nothing needs to be folded again after a kill."""
+
+LEAVE_S = 120.0
+"""After so long without news an incident is left; the next reading brings the worker back to it."""
+
+LONGEST_REST_S = 0.5
+RETRY_S = 1.0
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+log = structlog.get_logger(__name__)
+
+
+class Follower:
+    """Follows one incident until it is closed, idle for long, or taken by another worker.
+
+    Args:
+        head: the incident.
+        reader: of the log.
+        writer: of rows and states.
+        leases: of this worker.
+        compute: the one thread in which all folding is done.
+        publish: sends a picture or an answer to the web process.
+        shown_hz: how often a picture may be published.
+
+    Attributes:
+        epoch: of the lease; None while it is not held.
+        failed: the estimator could not fold an entry; the picture stands still.
+    """
+
+    def __init__(
+        self,
+        head: Head,
+        reader: LogReader,
+        writer: DerivedWriter,
+        leases: Leases,
+        compute: Executor,
+        publish: Publish,
+        shown_hz: float,
+    ) -> None:
+        self.epoch: int | None = None
+        self.failed = False
+        self._head = head
+        self._reader = reader
+        self._writer = writer
+        self._leases = leases
+        self._compute = compute
+        self._publication = Publication(head.incident, publish, shown_hz)
+        self._news = asyncio.Event()
+        self._news_seq = head.last_seq
+        self._stopping = False
+        self._fold: IncidentFold
+        self._keeper: Keeper
+        self._storing: asyncio.Task[bool] | None = None
+
+    def hear(self, seq: int) -> None:
+        """The log has grown."""
+        if seq > self._news_seq:
+            self._news_seq = seq
+            self._news.set()
+
+    def hear_of(self, head: Head) -> bool:
+        """The incident as newly known; False if its estimator's settings are others now: it begins anew."""
+        if (head.tracker, head.settings) != (self._head.tracker, self._head.settings):
+            return False
+        if head.closed != self._head.closed:
+            self._news.set()
+        self._head = head
+        self.hear(head.last_seq)
+        return True
+
+    def show_again(self) -> None:
+        """Publish the newest picture once more: the web process may have missed it."""
+        self._publication.again()
+        self._news.set()
+
+    def stop(self) -> None:
+        """Store everything and end."""
+        self._stopping = True
+        self._news.set()
+
+    async def run(self) -> None:
+        """Follow.
+
+        Raises:
+            StaleEpoch: another worker holds the incident now.
+            LogUnreadable, LogUnwritable: the database failed before anything was folded.
+        """
+        self.epoch = await asyncio.to_thread(self._leases.acquire, self._head.incident)
+        if self.epoch is None:
+            return
+        self._fold, settled = await self._restore()
+        self._keeper = Keeper(self._writer, self._head.incident, self.epoch, settled, self._fold.seq)
+        try:
+            await self._follow()
+        except _EstimatorFailed:
+            # Whatever the estimator makes of one incident's readings, the other incidents go on.
+            log.exception("the estimator failed", incident=self._head.incident, seq=self._fold.seq)
+            self.failed = True
+            self._publication.stand_still(self._fold.seq)
+            await self._keeper.save(None)
+            return
+        await asyncio.to_thread(self._leases.release, self._head.incident, self.epoch)
+
+    async def ask(self, query: Query) -> Answer:
+        """The answer to a question about two nodes."""
+        if not hasattr(self, "_fold"):
+            return Answer(query.number, found=False, followed=False)
+        return await self._in_compute(answer, self._fold, query)
+
+    async def _follow(self) -> None:
+        heard_at = time.monotonic()
+        while True:
+            self._news.clear()
+            if await self._advance():
+                heard_at = time.monotonic()
+            await self._show()
+            quiet_s = time.monotonic() - heard_at
+            behind = self._news_seq > self._fold.seq
+            if not behind and self._publication.lacks(self._fold.seq):
+                await self._estimate(self._fold.prepare)
+            at_end = not behind and (self._head.closed or quiet_s >= LEAVE_S)
+            if at_end or self._stopping:
+                await self._show(last=True)
+                if await self._settle() or self._stopping:
+                    return
+            else:
+                await self._keep(caught_up=not behind, idle=quiet_s >= IDLE_S)
+            if not behind or self._keeper.full:
+                await self._rest()
+
+    async def _in_compute(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+        loop = asyncio.get_running_loop()
+        return await loop.run_in_executor(self._compute, lambda: function(*args, **kwargs))
+
+    async def _estimate(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+        """Run what folds readings or asks for what was folded: trackers do their work at either.
+
+        Raises:
+            _EstimatorFailed: the tracker could not.
+        """
+        try:
+            return await self._in_compute(function, *args, **kwargs)
+        except Exception as error:
+            raise _EstimatorFailed from error
+
+    async def _restore(self) -> tuple[IncidentFold, int | None]:
+        """The fold as it was stored, or a new one; and up to which second rows stay as they were shown."""
+        head = self._head
+        snapshot = await asyncio.to_thread(self._reader.snapshot, head.incident)
+        if snapshot is None:
+            return await self._in_compute(IncidentFold, head.tracker, head.settings), None
+        try:
+            fold = await self._in_compute(IncidentFold.restore, snapshot.state, head.tracker, head.settings)
+        except OtherState as why:
+            log.warning("the log is folded from its start", incident=head.incident, why=str(why))
+            span = await asyncio.to_thread(self._reader.frame_span, head.incident)
+            fold = await self._in_compute(IncidentFold, head.tracker, head.settings)
+            return fold, None if span is None else span[1]
+        return fold, None
+
+    async def _advance(self) -> bool:
+        """Fold one block of the log, if there is one and what waits to be stored leaves room."""
+        if self._news_seq <= self._fold.seq or self._keeper.full:
+            return False
+        try:
+            block = await asyncio.to_thread(read_block, self._reader, self._head.incident, self._fold.seq)
+        except LogUnreadable as error:
+            log.warning("the log cannot be read", incident=self._head.incident, error=str(error))
+            await asyncio.sleep(RETRY_S)
+            return False
+        work = self._folding(block)
+        while await self._estimate(_for_a_while, work):
+            await self._show()
+            await self._keep(caught_up=False)
+        if not block:
+            self._news_seq = self._fold.seq  # what was heard of is not there: the next poll tells
+        return bool(block)
+
+    def _folding(self, block: Iterable[Decoded]) -> Iterator[bool]:
+        """Fold entries; after each piece, tell whether its entry is folded whole."""
+        for batch, readings in block:
+            for row in self._fold.fold(batch, readings):
+                if row is not None:
+                    self._keeper.take(row)
+                yield False
+            yield True
+
+    async def _show(self, *, last: bool = False) -> None:
+        """Publish the picture if it is new and the last one was long enough ago, or no other will follow."""
+        seq = self._fold.seq
+        if not self._fold.whole or not self._publication.lacks(seq):
+            return
+        if self._publication.due_s() > 0 and not last:
+            return
+        self._publication.begin()
+        picture, encoded = await self._estimate(self._encoded)
+        self._publication.show(seq, self._fold.row, picture, encoded)
+
+    def _encoded(self) -> tuple[PictureRecord, bytes]:
+        picture = self._fold.picture()
+        return picture, record.encode(picture)
+
+    async def _keep(self, *, caught_up: bool, idle: bool = False) -> None:
+        """Have what waits stored, and the state from time to time, without waiting for the disk.
+
+        Raises:
+            StaleEpoch: another worker holds the incident now.
+        """
+        if self._storing is not None:
+            if not self._storing.done():
+                return
+            self._storing.result()
+            self._storing = None
+        if not self._fold.whole or self._keeper.rests_s(soon=caught_up) > 0:
+            return
+        snapshot = None
+        if self._keeper.wants_snapshot(self._fold.seq, idle=idle and caught_up):
+            snapshot = await self._estimate(self._snapshot)
+        if snapshot is not None or not self._keeper.empty:
+            self._storing = asyncio.create_task(self._keeper.save(snapshot))
+            # Where the following ends before it does, nobody asks for its exception any more.
+            self._storing.add_done_callback(lambda done: done.cancelled() or done.exception())
+
+    def _snapshot(self) -> Snapshot:
+        """The state, and the row of the current second with it: the rows then hold all that is known."""
+        row = self._fold.last_row()
+        if row is not None:
+            self._keeper.take(row)
+        return Snapshot(seq=self._fold.seq, state=self._fold.state())
+
+    async def _settle(self) -> bool:
+        """Store everything now; False where the database cannot be written."""
+        if self._storing is not None:
+            await self._storing
+            self._storing = None
+        if self._keeper.snapshot_seq == self._fold.seq and self._keeper.empty:
+            return True
+        return await self._keeper.save(await self._estimate(self._snapshot))
+
+    async def _rest(self) -> None:
+        """Wait for news, or until something is due."""
+        due_s = self._publication.due_s() if self._publication.lacks(self._fold.seq) else LONGEST_REST_S
+        if not self._keeper.empty and (self._storing is None or self._storing.done()):
+            due_s = min(due_s, self._keeper.rests_s(soon=True))
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self._news.wait(), min(max(due_s, 0.001), LONGEST_REST_S))
+
+
+class _EstimatorFailed(Exception):  # noqa: N818 - names the condition
+    """The tracker raised what it never should."""
+
+
+def _for_a_while(work: Iterator[bool]) -> bool:
+    """Work until time is over and an entry is whole; False when all is done."""
+    began = time.perf_counter()
+    for whole in work:
+        spent_s = time.perf_counter() - began
+        if (whole and spent_s >= SLICE_S) or spent_s >= LONGEST_SLICE_S:
+            return True
+    return False

@@ -1,0 +1,172 @@
+"""Routes that show where everybody is and was: `frame`, `relative`, `tracks`."""
+
+import asyncio
+import math
+import time
+from typing import Annotated, Literal
+
+import msgspec
+from fastapi import APIRouter, Query
+from starlette.responses import Response
+
+from backend.coordination.base import WebSide
+from backend.errors import PROBLEM_MEDIA_TYPE, Conflict, FieldError, Invalid, NotFound, TooSlow, Unavailable
+from backend.live.frame import RelativePosition, Track, Tracks
+from backend.live.hub import Hub
+from backend.live.past import frame_of, row_at
+from backend.log.base import LogReader
+from backend.log.incidents import IncidentStore
+from backend.tracking.heads import head_of
+from backend.tracking.smoothing import Smoothing
+from backend.tracking.tracks import live_tracks
+from estimator.estimate import Relative, TrackPoint
+
+ASK_WITHIN_S = 5.0
+LATEST_T = 4_102_444_800.0
+
+Moment = Annotated[float | None, Query(ge=0.0, le=LATEST_T, allow_inf_nan=False)]
+NodeName = Annotated[str, Query(min_length=1, max_length=64)]
+From = Annotated[float | None, Query(alias="from", ge=0.0, le=LATEST_T, allow_inf_nan=False)]
+
+
+def tracking_router(
+    incidents: IncidentStore, reader: LogReader, hub: Hub, workers: WebSide, smoothing: Smoothing
+) -> APIRouter:
+    """The routes.
+
+    Args:
+        incidents: settings and levels.
+        reader: of the log and the recorded rows.
+        hub: the newest pictures.
+        workers: answers questions that need the joint covariance.
+        smoothing: smooths whole incidents.
+    """
+    router = APIRouter(prefix="/api/v1/incidents/{incident}", tags=["picture"])
+
+    @router.get("/frame", operation_id="get_frame", responses=_answer("Frame", 404, 503, 504))
+    async def frame(
+        incident: str,
+        t: Moment = None,
+        min_seq: Annotated[int, Query(ge=0, le=2**62)] = 0,
+        timeout_s: Annotated[float, Query(ge=0.0, le=60.0, allow_inf_nan=False)] = 10.0,
+    ) -> Response:
+        """The picture now, or as it was known and shown at `t`.
+
+        `min_seq` waits until the estimator has folded that log entry, at most `timeout_s`.
+        """
+        channel = await hub.channel(incident)
+        if not await channel.folded(min_seq, timeout_s):
+            raise TooSlow(
+                f"Log entry {min_seq} was not folded within {timeout_s:g} s; the newest one is {channel.seq}."
+            )
+        if t is None or t >= channel.now(time.time()):
+            return _json(channel.frame(time.time()))
+        await hub.stored(channel, t)
+        row = await asyncio.to_thread(row_at, reader, channel.incident, t)
+        return _json(frame_of(row, channel.incident, t))
+
+    @router.get(
+        "/relative", operation_id="get_relative", responses=_answer("RelativePosition", 404, 409, 503, 504)
+    )
+    async def relative(incident: str, a: NodeName, b: NodeName) -> Response:
+        """Where node `b` is relative to node `a`, from their joint covariance."""
+        known = await asyncio.to_thread(incidents.get, incident)
+        if a == b:
+            message = "`a` and `b` are the same node: name two"
+            raise Invalid(message, [FieldError(code="same_node", field="query.b", message=message)])
+        try:
+            answer = await workers.ask(incident, a, b, ASK_WITHIN_S)
+        except Unavailable:
+            answer = None
+        if answer is None or not answer.followed:
+            found = await smoothing.relative(head_of(known), a, b)
+            if found is None:
+                raise Conflict("The position of one of them is not decided yet.")
+            return _json(relative_position(found))
+        if answer.delta_m is None or answer.covariance_m2 is None:
+            raise NotFound(answer.detail) if answer.unknown else Conflict(answer.detail)
+        return _json(relative_position(Relative(delta_m=answer.delta_m, covariance_m2=answer.covariance_m2)))
+
+    @router.get("/tracks", operation_id="get_tracks", responses=_answer("Tracks", 404, 503, 504))
+    async def tracks(
+        incident: str,
+        node: Annotated[str | None, Query(min_length=1, max_length=64)] = None,
+        start: From = None,
+        to: Moment = None,
+        step: Annotated[int, Query(ge=1, le=3600, description="seconds from point to point")] = 1,
+        view: Literal["live", "smoothed"] = "live",
+    ) -> Response:
+        """Where the nodes were: as it was known then (`live`), or with everything known now (`smoothed`)."""
+        channel = await hub.channel(incident)
+        if view == "live":
+            await hub.stored(channel, LATEST_T if to is None else to)
+            newest = None
+            if channel.record.t is not None and channel.record.t.is_integer():
+                newest = int(channel.record.t), channel.record
+            shown = await asyncio.to_thread(live_tracks, reader, incident, node, start, to, step, newest)
+            return _json(shown)
+        smoothed = await smoothing.smoothed(head_of(channel.incident))
+        chosen = smoothed if node is None else {name: smoothed[name] for name in smoothed if name == node}
+        return _json(_tracks(chosen, start, to, step))
+
+    return router
+
+
+REFUSALS = {
+    404: "There is no such incident or node",
+    409: "The position of a node is not decided yet",
+    503: "A part that the answer needs is away",
+    504: "What was waited for did not come in time",
+}
+
+
+def _answer(schema: str, *refusals: int) -> dict[int | str, dict[str, object]]:
+    """The answer and the refusals of a route, for the OpenAPI document."""
+    content = {"application/json": {"schema": {"$ref": f"#/components/schemas/{schema}"}}}
+    problem = {PROBLEM_MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
+    responses: dict[int | str, dict[str, object]] = {200: {"content": content, "description": "OK"}}
+    for status in refusals:
+        responses[status] = {"content": problem, "description": REFUSALS[status]}
+    return responses
+
+
+def _json(answer: msgspec.Struct) -> Response:
+    return Response(msgspec.json.encode(answer), media_type="application/json")
+
+
+def relative_position(relative: Relative) -> RelativePosition:
+    """A relative position with its distance, whose variance is that along the line between the two."""
+    east, north, up = relative.delta_m
+    ee, en, eu, nn, nu, uu = relative.covariance_m2
+    distance_m = math.sqrt(east * east + north * north + up * up)
+    if distance_m > 0.0:
+        e, n, u = east / distance_m, north / distance_m, up / distance_m
+        variance = e * e * ee + n * n * nn + u * u * uu + 2.0 * (e * n * en + e * u * eu + n * u * nu)
+    else:
+        variance = ee + nn + uu
+    return RelativePosition(
+        delta_m=relative.delta_m,
+        covariance_m2=relative.covariance_m2,
+        distance_m=distance_m,
+        distance_sigma_m=math.sqrt(max(variance, 0.0)),
+    )
+
+
+def _tracks(
+    smoothed: dict[str, list[TrackPoint]], start: float | None, to: float | None, step: int
+) -> Tracks:
+    return Tracks(
+        tracks=[
+            Track(
+                node=node,
+                points=[
+                    (point.t, *point.position_m, *point.covariance_m2)
+                    for point in points
+                    if (start is None or point.t >= start)
+                    and (to is None or point.t <= to)
+                    and point.t % step == 0
+                ],
+            )
+            for node, points in smoothed.items()
+        ]
+    )

@@ -1,0 +1,155 @@
+"""A picture ages by itself."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from backend.live.presentation import covariance_at, now_of, present, status_of
+from backend.live.record import EMPTY, PictureRecord, RecordAlarm, RecordNode, RecordNotice
+from backend.log.incident import Incident, IncidentSettings
+from estimator.measurements.node import Role
+
+ROLES: list[Role] = ["base", "anchor", "beacon", "breadcrumb", "responder", "uav"]
+ORDER = ["live", "stale", "lost"]
+Make = Callable[..., Incident]
+
+ages = st.floats(0.0, 1e6)
+roots = st.lists(st.floats(-30.0, 30.0), min_size=9, max_size=9)
+
+
+def responder(**fields: Any) -> RecordNode:
+    known: dict[str, Any] = {
+        "node": "ff1",
+        "role": "responder",
+        "t": 100.0,
+        "position_m": (1.0, 2.0, 3.1),
+        "covariance_m2": (1.0, 0.2, 0.0, 0.9, 0.0, 0.4),
+    }
+    return RecordNode(**(known | fields))
+
+
+def matrix(upper: tuple[float, ...]) -> NDArray[np.float64]:
+    ee, en, eu, nn, nu, uu = upper
+    return np.array([[ee, en, eu], [en, nn, nu], [eu, nu, uu]])
+
+
+def test_a_responder_is_live_then_stale_then_lost() -> None:
+    settings = IncidentSettings()
+    at = {age: status_of("responder", age, settings, retired=False) for age in (0.0, 10.0, 10.1, 60.0, 60.1)}
+    assert at == {0.0: "live", 10.0: "live", 10.1: "stale", 60.0: "stale", 60.1: "lost"}
+
+
+def test_a_breadcrumb_is_given_more_time_than_a_responder() -> None:
+    settings = IncidentSettings()
+    assert status_of("breadcrumb", 59.0, settings, retired=False) == "live"
+    assert status_of("breadcrumb", 61.0, settings, retired=False) == "stale"
+    assert status_of("breadcrumb", 301.0, settings, retired=False) == "lost"
+
+
+def test_the_base_stays_live_and_who_left_stays_retired() -> None:
+    settings = IncidentSettings()
+    assert status_of("base", 1e6, settings, retired=False) == "live"
+    assert status_of("responder", 0.0, settings, retired=True) == "retired"
+
+
+def test_an_incident_may_set_its_own_limits() -> None:
+    settings = IncidentSettings(stale_after_s=2.0, lost_after_s=4.0)
+    assert status_of("uav", 3.0, settings, retired=False) == "stale"
+    assert status_of("uav", 5.0, settings, retired=False) == "lost"
+
+
+@given(st.sampled_from(ROLES), ages, ages)
+def test_no_node_gets_better_by_getting_older(role: Role, one: float, other: float) -> None:
+    younger, older = sorted((one, other))
+    settings = IncidentSettings()
+    before = status_of(role, younger, settings, retired=False)
+    after = status_of(role, older, settings, retired=False)
+    assert ORDER.index(before) <= ORDER.index(after)
+
+
+@given(roots, st.sampled_from(ROLES), ages, ages)
+def test_uncertainty_never_shrinks_with_age_and_stays_a_covariance(
+    root: list[float], role: Role, one: float, other: float
+) -> None:
+    factor = np.array(root).reshape(3, 3)
+    full = factor @ factor.T
+    upper = tuple(float(full[i, j]) for i in range(3) for j in range(i, 3))
+    known = responder(role=role, covariance_m2=upper, t=0.0)
+    younger, older = sorted((one, other))
+    before, after = covariance_at(known, younger), covariance_at(known, older)
+    assert before is not None
+    assert after is not None
+    tolerance = 1e-9 * (1.0 + abs(full).max() + older**2)
+    assert np.linalg.eigvalsh(matrix(after)).min() >= -tolerance
+    assert np.linalg.eigvalsh(matrix(after) - matrix(before)).min() >= -tolerance
+
+
+def test_a_fix_of_the_last_second_is_shown_as_the_estimator_gave_it() -> None:
+    known = responder()
+    assert covariance_at(known, 101.0) == known.covariance_m2
+
+
+def test_who_may_have_walked_on_is_less_certain_and_stays_at_the_last_fix(incident: Make) -> None:
+    frame = present(PictureRecord(t=100.0, nodes=(responder(),)), 7, 120.0, incident())
+    (node,) = frame.nodes
+    assert node.position_m == (1.0, 2.0, 3.1)
+    assert node.covariance_m2 == pytest.approx((101.0, 0.2, 0.0, 100.9, 0.0, 4.4))
+    assert (node.status, node.t, frame.seq, frame.t) == ("stale", 100.0, 7, 120.0)
+
+
+def test_a_breadcrumb_does_not_walk(incident: Make) -> None:
+    known = responder(role="breadcrumb")
+    (node,) = present(PictureRecord(t=100.0, nodes=(known,)), 1, 500.0, incident()).nodes
+    assert node.covariance_m2 == known.covariance_m2
+
+
+def test_a_storey_becomes_less_sure_with_age(incident: Make) -> None:
+    record = PictureRecord(t=100.0, nodes=(responder(),))
+    (fresh,) = present(record, 1, 100.0, incident()).nodes
+    (old,) = present(record, 1, 160.0, incident()).nodes
+    assert fresh.level == old.level == 1
+    assert fresh.level_p is not None
+    assert old.level_p is not None
+    assert 0.5 < old.level_p < fresh.level_p < 1.0
+
+
+def test_without_named_storeys_no_storey_is_told(incident: Make) -> None:
+    (node,) = present(PictureRecord(t=100.0, nodes=(responder(),)), 1, 100.0, incident(levels=[])).nodes
+    assert (node.level, node.level_p) == (None, None)
+
+
+def test_a_node_without_a_place_is_shown_without_one(incident: Make) -> None:
+    known = responder(position_m=None, covariance_m2=None)
+    (node,) = present(PictureRecord(t=100.0, nodes=(known,)), 1, 130.0, incident()).nodes
+    assert (node.position_m, node.covariance_m2, node.level, node.status) == (None, None, None, "stale")
+
+
+def test_alarms_and_notices_are_shown(incident: Make) -> None:
+    alarm = RecordAlarm(node="ff1", alarm="mayday", state="raised", t=99.0, text="trapped")
+    notices = tuple(RecordNotice(code="not_fused", t=float(i), text="imu", node=f"ff{i}") for i in range(20))
+    frame = present(PictureRecord(t=100.0, alarms=(alarm,), notices=notices), 1, 100.0, incident())
+    assert [(a.node, a.alarm, a.state, a.t, a.text) for a in frame.alarms] == [
+        ("ff1", "mayday", "raised", 99.0, "trapped")
+    ]
+    assert [notice.node for notice in frame.notices] == [f"ff{i}" for i in range(12, 20)]
+
+
+def test_a_moved_breadcrumb_is_flagged_for_ten_minutes(incident: Make) -> None:
+    record = PictureRecord(t=100.0, nodes=(responder(role="breadcrumb", moved_t=100.0),))
+    assert present(record, 1, 699.0, incident()).nodes[0].moved
+    assert not present(record, 1, 701.0, incident()).nodes[0].moved
+
+
+def test_now_is_the_servers_clock_or_the_newest_reading(incident: Make) -> None:
+    record = PictureRecord(t=100.0)
+    assert now_of(incident(), record, 500.0) == 500.0
+    assert now_of(incident(clock="recorded"), record, 500.0) == 100.0
+    assert now_of(incident(clock="recorded"), EMPTY, 500.0) == 0.0
+    assert now_of(incident(state="closed", closed=200.0), record, 500.0) == 200.0
+    assert not math.isnan(now_of(incident(), EMPTY, 0.0))

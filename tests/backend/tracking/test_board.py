@@ -1,0 +1,123 @@
+"""What is shown but not fused."""
+
+from backend.live.record import PictureRecord, RecordAlarm
+from backend.tracking.board import NOTICES_KEPT, REPEAT_S, Board
+from estimator.estimate import NodeEstimate, Notice
+from estimator.measurements import Alarm, AnyReading, Node, Range, Status
+
+
+def board(*readings: AnyReading) -> Board:
+    made = Board()
+    made.fold(readings)
+    return made
+
+
+def picture(made: Board, *nodes: str) -> PictureRecord:
+    return made.picture([NodeEstimate(node=node, role="responder", t=1.0) for node in nodes], 1.0)
+
+
+def alarms(*readings: AnyReading) -> list[tuple[str, str, float, str | None]]:
+    return [(a.alarm, a.state, a.t, a.text) for a in picture(board(*readings)).alarms]
+
+
+def alarm(state: str, t: float, kind: str = "mayday", text: str | None = None, node: str = "ff1") -> Alarm:
+    return Alarm(t=t, node=node, alarm=kind, state=state, text=text)  # type: ignore[arg-type]  # literals as text
+
+
+def test_names_stay_until_they_are_changed() -> None:
+    made = board(
+        Node(t=1.0, node="ff1", role="responder", callsign="E7-1", crew="E7"),
+        Node(t=2.0, node="ff1", role="responder", callsign="E7-2"),
+    )
+    (node,) = picture(made, "ff1").nodes
+    assert (node.callsign, node.crew) == ("E7-2", "E7")
+
+
+def test_each_vital_sign_is_the_newest_that_was_reported() -> None:
+    made = board(
+        Status(t=10.0, node="ff1", battery=0.9, air_bar=200.0),
+        Status(t=20.0, node="ff1", air_bar=150.0, temperature_c=40.0),
+        Status(t=15.0, node="ff1", air_bar=180.0, motionless_s=9.0),
+    )
+    (node,) = picture(made, "ff1").nodes
+    assert (node.battery, node.air_bar, node.temperature_c, node.motionless_s) == (0.9, 150.0, 40.0, None)
+
+
+def test_a_mayday_stands_until_it_is_cleared() -> None:
+    raised = alarm("raised", 10.0, text="trapped")
+    assert alarms(raised) == [("mayday", "raised", 10.0, "trapped")]
+    assert alarms(raised, alarm("acknowledged", 12.0)) == [("mayday", "acknowledged", 10.0, "trapped")]
+    assert alarms(raised, alarm("acknowledged", 12.0), alarm("cleared", 13.0)) == []
+
+
+def test_a_tablet_whose_clock_is_behind_can_acknowledge() -> None:
+    assert alarms(alarm("raised", 1000.0), alarm("acknowledged", 10.0)) == [
+        ("mayday", "acknowledged", 1000.0, None)
+    ]
+
+
+def test_a_node_may_have_several_alarms_the_oldest_first() -> None:
+    assert alarms(alarm("raised", 11.0, "help"), alarm("raised", 10.0, "pass"), alarm("raised", 12.0)) == [
+        ("pass", "raised", 10.0, None),
+        ("help", "raised", 11.0, None),
+        ("mayday", "raised", 12.0, None),
+    ]
+
+
+def test_a_unit_that_keeps_sounding_does_not_undo_the_acknowledgement() -> None:
+    sounding = [alarm("raised", 10.0 + i, "pass") for i in range(5)]
+    more = [alarm("raised", 15.0 + i, "pass") for i in range(50)]
+    assert alarms(*sounding, alarm("acknowledged", 15.0, "pass"), *more) == [
+        ("pass", "acknowledged", 10.0, None)
+    ]
+
+
+def test_a_new_call_after_silence_or_with_new_words_is_a_new_alarm() -> None:
+    acknowledged = (alarm("raised", 10.0, text="trapped"), alarm("acknowledged", 12.0))
+    later = alarm("raised", 11.0 + REPEAT_S + 10.0)
+    assert alarms(*acknowledged, later) == [("mayday", "raised", later.t, "trapped")]
+    assert alarms(*acknowledged, alarm("raised", 13.0, text="low air")) == [
+        ("mayday", "raised", 13.0, "low air")
+    ]
+
+
+def test_an_alarm_that_comes_again_by_another_way_stays_cleared() -> None:
+    raised = alarm("raised", 10.0)
+    assert alarms(raised, alarm("cleared", 12.0), raised) == []
+    assert alarms(raised, alarm("cleared", 12.0), alarm("raised", 13.0)) == [("mayday", "raised", 13.0, None)]
+
+
+def test_an_acknowledgement_of_an_alarm_that_was_never_heard_shows_it() -> None:
+    assert alarms(alarm("acknowledged", 5.0)) == [("mayday", "acknowledged", 5.0, None)]
+
+
+def test_who_raises_an_alarm_is_shown_even_if_the_tracker_does_not_know_of_it() -> None:
+    made = picture(board(alarm("raised", 10.0)))
+    assert [(node.node, node.role, node.t, node.position_m) for node in made.nodes] == [
+        ("ff1", "responder", 10.0, None)
+    ]
+    assert made.alarms == (RecordAlarm(node="ff1", alarm="mayday", state="raised", t=10.0),)
+
+
+def test_a_notice_replaces_the_last_of_its_kind_and_node_and_few_are_kept() -> None:
+    made = Board()
+    made.notice(
+        [
+            Notice(code="outlier", t=1.0, node="ff1", text="one"),
+            Notice(code="outlier", t=2.0, node="ff2", text="x"),
+        ]
+    )
+    made.notice([Notice(code="outlier", t=3.0, node="ff1", text="two")])
+    assert [(n.node, n.text) for n in picture(made).notices] == [("ff2", "x"), ("ff1", "two")]
+    made.notice([Notice(code="outlier", t=4.0, node=f"n{i}", text="many") for i in range(100)])
+    assert len(picture(made).notices) == NOTICES_KEPT
+
+
+def test_a_moved_breadcrumb_keeps_when_it_was_noticed() -> None:
+    made = Board()
+    made.notice([Notice(code="node_moved", t=7.0, node="bc1", text="moved")])
+    assert picture(made, "bc1").nodes[0].moved_t == 7.0
+
+
+def test_other_readings_leave_no_trace() -> None:
+    assert board(Range(t=1.0, a="ff1", b="bc1", range_m=1.0)) == Board()

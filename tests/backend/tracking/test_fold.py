@@ -1,0 +1,112 @@
+"""Folding is a function of the log: nothing of when, how often or by whom it is done is in the rows."""
+
+import random
+
+import pytest
+
+from backend.log.base import LoggedBatch, RecordedFrame
+from backend.tracking.fold import IncidentFold, OtherState
+from estimator.measurements import AnyReading
+from estimator.trackers.base import TrackerSettings
+from tests.backend.tracking.conftest import walk
+
+SETTINGS = TrackerSettings()
+
+
+def entry(seq: int) -> LoggedBatch:
+    return LoggedBatch(
+        seq=seq, gateway="e7", batch=f"b{seq}", received=1000.0 + seq, sent=None, body=b"", rejected=()
+    )
+
+
+def fold_all(fold: IncidentFold, batches: list[list[AnyReading]], first: int = 1) -> list[RecordedFrame]:
+    return [
+        row
+        for seq, readings in enumerate(batches, start=first)
+        for row in fold.fold(entry(seq), readings)
+        if row is not None
+    ]
+
+
+def test_a_fold_that_is_restored_anywhere_makes_the_same_rows() -> None:
+    batches = walk(30)
+    whole = IncidentFold("kirchhoff", SETTINGS)
+    rows = fold_all(whole, batches)
+    assert [row.second for row in rows] == list(range(1000, 1031))
+    for cut in random.Random(5).sample(range(1, len(batches)), 6):
+        first = IncidentFold("kirchhoff", SETTINGS)
+        before = fold_all(first, batches[:cut])
+        second = IncidentFold.restore(first.state(), "kirchhoff", SETTINGS)
+        after = fold_all(second, batches[cut:], first=cut + 1)
+        assert before + after == rows, f"cut after entry {cut}"
+        assert second.last_row() == whole.last_row()
+
+
+def test_looking_at_the_picture_changes_nothing() -> None:
+    batches = walk(20)
+    quiet = fold_all(IncidentFold("kirchhoff", SETTINGS), batches)
+    watched = IncidentFold("kirchhoff", SETTINGS)
+    rows = []
+    for seq, readings in enumerate(batches, start=1):
+        for row in watched.fold(entry(seq), readings):
+            watched.picture()
+            if row is not None:
+                rows.append(row)
+        watched.last_row()
+        watched.state()
+    assert rows == quiet
+
+
+def test_a_row_names_the_newest_entry_in_it() -> None:
+    fold = IncidentFold("kirchhoff", SETTINGS)
+    batches = walk(3)
+    rows = fold_all(fold, batches)
+    assert [(row.second, row.seq, row.received) for row in rows] == [
+        (1000, 1, 1001.0),
+        (1001, 2, 1002.0),
+        (1002, 4, 1004.0),
+        (1003, 5, 1005.0),  # the entry after it jumps ahead, the one that belonged here comes late
+    ]
+
+
+def test_the_row_of_the_current_second_is_replaced_by_the_one_that_is_final() -> None:
+    batches = walk(10)
+    fold = IncidentFold("kirchhoff", SETTINGS)
+    seconds = set()
+    for seq, readings in enumerate(batches, start=1):
+        seconds |= {row.second for row in fold.fold(entry(seq), readings) if row is not None}
+        current = fold.last_row()
+        assert current is not None
+        assert current.second not in seconds
+
+
+def test_an_entry_without_readings_counts() -> None:
+    fold = IncidentFold("kirchhoff", SETTINGS)
+    assert fold_all(fold, [[], []]) == []
+    assert (fold.seq, fold.received, fold.newest_t, fold.last_row()) == (2, 1002.0, None, None)
+    restored = IncidentFold.restore(fold.state(), "kirchhoff", SETTINGS)
+    assert (restored.seq, restored.picture().nodes) == (2, ())
+
+
+def test_a_state_for_other_settings_or_of_another_version_is_refused() -> None:
+    fold = IncidentFold("kirchhoff", SETTINGS)
+    fold_all(fold, walk(2))
+    state = fold.state()
+    with pytest.raises(OtherState, match="settings"):
+        IncidentFold.restore(state, "kirchhoff", TrackerSettings(lag_s=5.0))
+    with pytest.raises(OtherState, match="version"):
+        IncidentFold.restore(b"\x98\x63" + state[2:], "kirchhoff", SETTINGS)
+    with pytest.raises(OtherState):
+        IncidentFold.restore(b"nonsense", "kirchhoff", SETTINGS)
+    with pytest.raises(OtherState):
+        IncidentFold.restore(state[:-20], "kirchhoff", SETTINGS)
+
+
+def test_two_responders_relative_position_is_told() -> None:
+    fold = IncidentFold("kirchhoff", SETTINGS)
+    fold_all(fold, walk(5))
+    relative = fold.relative("ff1", "ff2")
+    assert relative is not None
+    assert relative.delta_m[0] == pytest.approx(-1.0, abs=1.0)
+    with pytest.raises(KeyError):
+        fold.relative("ff1", "nobody")
