@@ -1,0 +1,1 @@
+"""Firethread's own speed and accuracy tables."""

@@ -1,0 +1,82 @@
+"""labyrinth_uwb: a small robot with wheel odometry, ranging to four UWB anchors around a labyrinth.
+
+The anchors' places are in the data, and the stated variances of ranges are passed on. Where the robot starts
+and what it faces is not in the data, and is not taken from the truth: it stands for its first two seconds, in
+which the anchors tell its place; its heading is to be found. Heights are not given: all is in one plane.
+"""
+
+import math
+from pathlib import Path
+
+from backend.recordings.datasets.base import KNOWN_SIGMA_M, words
+from estimator.measurements import AnyReading, Displacement, Node, Range
+
+NAME = "labyrinth_uwb"
+RECORDINGS: tuple[str, ...] = ()
+ROBOT = "robot"
+
+
+def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
+    """The readings of the data set in `folder`.
+
+    Args:
+        folder: where `Indoor_UWB_Input.txt` is.
+        recording: there is but one.
+
+    Raises:
+        NotTheDataSet: the file is missing.
+    """
+    del recording
+    table = list(words(folder / "Indoor_UWB_Input.txt"))
+    ranged = [row for row in table if row[0] == "range2"]
+    wheels = [row for row in table if row[0] == "odom2diff"]
+    since = min(float(row[1]) for row in table)
+    introduced: list[AnyReading] = [
+        Node(t=since, node=ROBOT, role="responder", callsign="Robot", heading_sigma_rad=math.pi)
+    ]
+    places = {_anchor(row): (float(row[4]), float(row[5]), 0.0) for row in ranged}
+    introduced += [
+        Node(t=since, node=name, role="anchor", position_m=place, sigma_m=KNOWN_SIGMA_M)
+        for name, place in sorted(places.items())
+    ]
+    ranges = [
+        Range(
+            t=float(row[1]),
+            a=ROBOT,
+            b=_anchor(row),
+            range_m=float(row[2]),
+            sigma_m=math.sqrt(float(row[3])),
+            technology="uwb",
+        )
+        for row in ranged
+    ]
+    return [*introduced, *_driven(wheels, since), *ranges]
+
+
+def _anchor(row: list[str]) -> str:
+    return f"anchor-{row[6]}"
+
+
+def _driven(wheels: list[list[str]], since: float) -> list[AnyReading]:
+    """Displacements in a frame whose x axis is where the robot faces at first.
+
+    Yaw rate = (second velocity - first) / (2 · wheel base), as the authors' own library libRSF reads these
+    columns (`PredictMotionDifferential2D`): the stated base is from the centre to a wheel.
+    """
+    driven: list[AnyReading] = []
+    heading = 0.0
+    for row in wheels:
+        t, first, second, sideways, base_m = (float(word) for word in row[1:6])
+        span_s = t - since
+        turn_rad = (second - first) / (2.0 * base_m) * span_s
+        along = heading + turn_rad / 2.0
+        heading += turn_rad
+        ahead_m, left_m = (first + second) / 2.0 * span_s, sideways * span_s
+        delta_m = (
+            ahead_m * math.cos(along) - left_m * math.sin(along),
+            ahead_m * math.sin(along) + left_m * math.cos(along),
+            0.0,
+        )
+        driven.append(Displacement(t=t, node=ROBOT, delta_m=delta_m, from_t=since, heading_rad=heading))
+        since = t
+    return driven

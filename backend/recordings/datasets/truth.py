@@ -1,0 +1,80 @@
+"""The true positions of the data sets, for evaluation only: nothing here ever meets a reading."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from backend.recordings.datasets.base import rows, words
+
+FloatArray = NDArray[np.float64]
+Truth = tuple[FloatArray, FloatArray]
+"""Epochs, n (s, as the readings count), and positions, n × 3 (m)."""
+
+
+def truth_of(name: str, folder: Path) -> dict[str, Truth]:
+    """The true track of each node whose truth is known.
+
+    Args:
+        name: as `backend.recordings.datasets.convert` takes it.
+        folder: the data set's folder.
+
+    Raises:
+        KeyError: there is no such data set.
+        NotTheDataSet: the folder does not hold its truth.
+    """
+    data_set, _, recording = name.partition(":")
+    return _READERS[data_set](folder, recording)
+
+
+def _plaza1(folder: Path, recording: str) -> dict[str, Truth]:
+    del recording
+    robot = [
+        (float(r["t_s"]), float(r["x_m"]), float(r["y_m"]), 0.0) for r in rows(folder / "groundtruth.csv")
+    ]
+    found = {"robot": _truth(robot)}
+    for row in rows(folder / "beacons.csv"):
+        found[f"beacon-{row['beacon_id']}"] = _truth(
+            [(robot[0][0], float(row["x_m"]), float(row["y_m"]), 0.0)]
+        )
+    return found
+
+
+def _labyrinth(folder: Path, recording: str) -> dict[str, Truth]:
+    del recording
+    table = words(folder / "Indoor_UWB_GT.txt")
+    return {
+        "robot": _truth([(float(r[1]), float(r[2]), float(r[3]), 0.0) for r in table if r[0] == "point2"])
+    }
+
+
+def _hanyang(folder: Path, recording: str) -> dict[str, Truth]:
+    table = rows(folder / f"{recording or 'LOS_A1'}_trajectory.csv")
+    return {
+        "tag": _truth(
+            [(float(r["timestamp"]) / 1e9, float(r["x"]), float(r["y"]), float(r["z"])) for r in table]
+        )
+    }
+
+
+def _danis(folder: Path, recording: str) -> dict[str, Truth]:
+    table = rows(folder / f"{recording or 'rectangular_with_rotation'}.csv")
+    return {
+        "beacon1": _truth(
+            [(float(r["timestamp"]), float(r["x_m"]), float(r["y_m"]), float(r["z_m"])) for r in table]
+        )
+    }
+
+
+def _truth(table: list[tuple[float, float, float, float]]) -> Truth:
+    values = np.array(table, dtype=np.float64)
+    return values[:, 0], values[:, 1:]
+
+
+_READERS: dict[str, Callable[[Path, str], dict[str, Truth]]] = {
+    "plaza1": _plaza1,
+    "labyrinth_uwb": _labyrinth,
+    "uwb_outdoor_hanyang": _hanyang,
+    "ble_rssi_danis": _danis,
+}

@@ -1,0 +1,208 @@
+"""Recorded logs as NDJSON files: the lines that `GET …/log` gives go in, and come out again byte for byte."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import msgspec
+import sqlalchemy as sa
+
+from backend.errors import NotFound, NotUnderstood, Problem, TooLarge
+from backend.log.append import append_group
+from backend.log.base import NewBatch
+from backend.log.decode import judge
+from backend.log.engine import make_engine
+from backend.log.incident import Clock, Incident, Level, Origin
+from backend.log.incidents import IncidentStore
+from backend.log.lines import Line, log_line, parse_line
+from backend.log.migrate import prepare
+from backend.log.read import SqlLogReader
+
+MAX_READINGS = 10_000
+"""The contract's limit of a batch: what was exported had passed it."""
+
+GROUP_BATCHES = 256
+GROUP_BYTES = 8 * 1024 * 1024
+
+Progress = Callable[[int, int], None]
+"""Called with the lines written so far and all lines of the file."""
+
+
+class Imported(msgspec.Struct, frozen=True, kw_only=True):
+    """What became of a file.
+
+    Attributes:
+        incident: the id of the new incident.
+        batches: how many entries its log has.
+        duplicates: lines whose gateway and batch had come before in the file.
+        accepted: readings that go to the estimator.
+        rejected: readings that were set aside.
+    """
+
+    incident: str = ""
+    batches: int = 0
+    duplicates: int = 0
+    accepted: int = 0
+    rejected: int = 0
+
+    def plus(self, more: "Imported") -> "Imported":
+        """The sums of both, for the incident of this one."""
+        return Imported(
+            incident=self.incident,
+            batches=self.batches + more.batches,
+            duplicates=self.duplicates + more.duplicates,
+            accepted=self.accepted + more.accepted,
+            rejected=self.rejected + more.rejected,
+        )
+
+
+def import_log(
+    url: str,
+    name: str,
+    path: Path,
+    clock: Clock = "recorded",
+    levels: list[Level] | None = None,
+    origin: Origin | None = None,
+    progress: Progress | None = None,
+) -> Imported:
+    """Write a recorded log into a new incident, past the server: each import makes an incident of its own.
+
+    The whole file is read and understood before anything is stored. A line without `received` is taken to
+    have come when it was sent, or at its newest reading; `seq` counts the lines anew. Readings are judged as
+    ingest judges them; those that the line itself lists as rejected stay so.
+
+    Args:
+        url: SQLAlchemy URL of the log's database; it is created or migrated where needed.
+        name: of the incident.
+        path: of the file.
+        clock: of the incident.
+        levels: its storeys.
+        origin: of its local coordinates.
+        progress: told after each transaction.
+
+    Raises:
+        NotUnderstood: a line is no batch; the message names the line.
+        TooLarge: a line has more readings than a batch may have.
+        SchemaTooNew: a newer version has written the database.
+        OSError: the file cannot be read.
+        Problem: the log refused a batch, for one because somebody has closed the incident meanwhile.
+        LogUnwritable: the database cannot be written.
+    """
+    total = sum(1 for _ in batches_in(path, "", clock))
+    prepare(url)
+    engine = make_engine(url)
+    try:
+        incident = IncidentStore(engine).create(name, clock, origin, levels).id
+        imported, written = Imported(incident=incident), 0
+        for group in _groups(batches_in(path, incident, clock)):
+            imported = imported.plus(_append(engine, group))
+            written += len(group)
+            if progress is not None:
+                progress(written, total)
+        return imported
+    finally:
+        engine.dispose()
+
+
+def export_log(url: str, incident: str) -> Iterator[bytes]:
+    """The lines of an incident's log in `seq` order, newline included.
+
+    Args:
+        url: SQLAlchemy URL of the log's database.
+        incident: its id, or its name where no other incident has it.
+
+    Raises:
+        NotFound: there is no such incident, or several have that name; the message lists them.
+        SchemaTooNew: a newer version has written the database.
+        LogUnwritable: the database cannot be reached.
+    """
+    prepare(url)
+    engine = make_engine(url)
+    try:
+        found = find_incident(IncidentStore(engine), incident)
+        for logged in SqlLogReader(engine).batches(found.id):
+            yield log_line(logged)
+    finally:
+        engine.dispose()
+
+
+def find_incident(store: IncidentStore, name: str) -> Incident:
+    """The incident with id or name `name`.
+
+    Raises:
+        NotFound: there is none, or several have that name.
+    """
+    known = store.all()
+    found = [one for one in known if one.id == name] or [one for one in known if one.name == name]
+    if len(found) == 1:
+        return found[0]
+    what = f"{len(found)} incidents are called {name!r}" if found else f"There is no incident {name!r}"
+    listed = ", ".join(f"{one.id} ({one.name})" for one in (found or known)[-10:]) or "none at all"
+    raise NotFound(f"{what}: give one of these ids: {listed}.")
+
+
+def batches_in(path: Path, incident: str, clock: Clock) -> Iterator[NewBatch]:
+    """The lines of a file as batches of `incident`; empty lines are left out.
+
+    Raises:
+        NotUnderstood: a line is no batch; the message names it.
+        TooLarge: a line has more readings than a batch may have.
+        OSError: the file cannot be read.
+    """
+    with path.open("rb") as file:
+        for number, line in enumerate(file, start=1):
+            if line.strip():
+                try:
+                    yield _new_batch(parse_line(line), incident, clock)
+                except (NotUnderstood, TooLarge) as error:
+                    raise type(error)(
+                        f"{path}, line {number}: {error.detail} Nothing was imported."
+                    ) from error
+
+
+def _new_batch(line: Line, incident: str, clock: Clock) -> NewBatch:
+    body = line.body()
+    judged = judge(body, MAX_READINGS, line.received if clock == "live" else None)
+    aside = {fault.index for fault in line.rejected}
+    rejected = line.rejected + tuple(fault for fault in judged.rejected if fault.index not in aside)
+    count = len(judged.accepted) + len(judged.rejected)
+    newest = max((reading.t for reading in judged.accepted), default=0.0)
+    received = line.received if line.received is not None else line.sent
+    return NewBatch(
+        incident=incident,
+        gateway=line.gateway,
+        batch=line.batch,
+        received=newest if received is None else received,
+        sent=line.sent,
+        body=body,
+        accepted=count - len(rejected),
+        rejected=tuple(sorted(rejected, key=lambda fault: fault.index or 0)),
+    )
+
+
+def _groups(batches: Iterator[NewBatch]) -> Iterator[list[NewBatch]]:
+    """Batches in groups of a size that one transaction holds well."""
+    group: list[NewBatch] = []
+    size = 0
+    for batch in batches:
+        group.append(batch)
+        size += len(batch.body)
+        if len(group) >= GROUP_BATCHES or size >= GROUP_BYTES:
+            yield group
+            group, size = [], 0
+    if group:
+        yield group
+
+
+def _append(engine: sa.Engine, group: list[NewBatch]) -> Imported:
+    """Append a group; what became of it."""
+    batches = duplicates = accepted = rejected = 0
+    for outcome in append_group(engine, group):
+        if isinstance(outcome, Problem):
+            raise outcome
+        if outcome.duplicate:
+            duplicates += 1
+        else:
+            batches += 1
+            accepted += outcome.accepted
+            rejected += len(outcome.rejected)
+    return Imported(batches=batches, duplicates=duplicates, accepted=accepted, rejected=rejected)
