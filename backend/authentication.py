@@ -1,0 +1,124 @@
+"""Who may ask: one access token per deployment, as bearer token for gateways and as cookie for screens."""
+
+import hmac
+import secrets
+from http.cookies import CookieError, SimpleCookie
+from pathlib import Path
+from urllib.parse import parse_qs
+
+from fastapi import APIRouter, Response
+from pydantic import BaseModel, Field
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from backend.errors import NotAuthenticated, Problem
+
+COOKIE = "firethread"
+TOKEN_FILE = "access-token"  # noqa: S105 - the file's name, not a secret
+PROTECTED_PREFIX = "/api/"
+SESSION_PATH = "/api/v1/session"
+EIGHT_HOURS_S = 8 * 3600
+"""A screen stays signed in for a long shift."""
+
+
+def access_token(data: Path) -> str:
+    """The token of a data folder, made at first use and readable by its owner only.
+
+    Args:
+        data: folder of the deployment.
+    """
+    path = data / TOKEN_FILE
+    try:
+        token = path.read_text().strip()
+    except FileNotFoundError:
+        token = ""
+    if token:
+        return token
+    token = secrets.token_urlsafe(24)
+    path.touch(mode=0o600)
+    path.chmod(0o600)
+    path.write_text(token + "\n")
+    return token
+
+
+class Authentication:
+    """ASGI middleware: requests to the API need the token; pages, health and metrics do not.
+
+    Args:
+        app: the application behind it.
+        token: the access token; None lets everybody in.
+    """
+
+    def __init__(self, app: ASGIApp, token: str | None) -> None:
+        self.app = app
+        self.token = None if token is None else token.encode()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, or refuse it."""
+        if (
+            self.token is None
+            or scope["type"] == "lifespan"
+            or not scope["path"].startswith(PROTECTED_PREFIX)
+            or scope["path"] == SESSION_PATH
+            or self._carries_token(scope)
+        ):
+            await self.app(scope, receive, send)
+            return
+        problem = NotAuthenticated(
+            "send the header `Authorization: Bearer TOKEN`, or sign in on the screen; the token stands in "
+            f"the file `{TOKEN_FILE}` of the server's data folder"
+        )
+        if scope["type"] == "websocket":
+            await receive()
+            await send({"type": "websocket.close", "code": 4401, "reason": problem.title})
+            return
+        await send_problem(problem, send)
+
+    def _carries_token(self, scope: Scope) -> bool:
+        """Whether header, cookie or (for sockets of programs) query names the token."""
+        assert self.token is not None  # noqa: S101 - callers have asked
+        for name, value in scope["headers"]:
+            if name == b"authorization" and value[:7].lower() == b"bearer ":
+                return hmac.compare_digest(value[7:].strip(), self.token)
+            if name == b"cookie":
+                try:
+                    cookie = SimpleCookie(value.decode("latin-1")).get(COOKIE)
+                except CookieError:
+                    continue
+                if cookie is not None and hmac.compare_digest(cookie.value.encode(), self.token):
+                    return True
+        if scope["type"] == "websocket":
+            given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[0]
+            return hmac.compare_digest(given.encode(), self.token)
+        return False
+
+
+async def send_problem(problem: Problem, send: Send) -> None:
+    """Answer a plain ASGI request with a problem."""
+    headers = [(name.encode(), value.encode()) for name, value in problem.headers().items()]
+    await send({"type": "http.response.start", "status": problem.status, "headers": headers})
+    await send({"type": "http.response.body", "body": problem.body()})
+
+
+class SignIn(BaseModel):
+    """What a screen sends to be let in."""
+
+    token: str = Field(min_length=1, max_length=200, description="The access token of the deployment.")
+
+
+def session_router(token: str | None) -> APIRouter:
+    """The route by which a screen signs in.
+
+    Args:
+        token: the access token; None lets everybody in.
+    """
+    router = APIRouter(tags=["access"])
+
+    @router.post(SESSION_PATH, status_code=204)
+    def sign_in(given: SignIn, response: Response) -> None:
+        """Trade the access token for a cookie that scripts of a page cannot read."""
+        if token is not None:
+            if not hmac.compare_digest(given.token.encode(), token.encode()):
+                raise NotAuthenticated("that is not the access token of this deployment")
+            response.set_cookie(COOKIE, token, max_age=EIGHT_HOURS_S, httponly=True, samesite="strict")
+
+    return router

@@ -1,0 +1,279 @@
+"""The command `firethread`: each function reads its options and calls the house."""
+
+import os
+
+# Before anything imports numpy: with more threads sums depend on chance, and the web process starves.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated, NoReturn
+
+import typer
+
+from backend.log.incident import Clock
+from backend.reports import to_standard_error
+from backend.settings import DATABASE_VARIABLE, LINK_TOKEN_VARIABLE, Settings
+
+app = typer.Typer(
+    help="Where every firefighter is inside a burning building, how sure that is, and the way out.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+@app.callback()
+def every_command() -> None:
+    """Where every firefighter is inside a burning building, how sure that is, and the way out."""
+    to_standard_error()
+
+
+Data = Annotated[Path, typer.Option("--data", help="Folder of the SQLite database and the access token.")]
+Database = Annotated[
+    str | None,
+    typer.Option(
+        "--database", envvar=DATABASE_VARIABLE, help="URL of a Postgres database, instead of SQLite."
+    ),
+]
+Supervised = Annotated[bool, typer.Option("--supervised", hidden=True)]
+
+
+def refuse(reason: object) -> NoReturn:
+    """End with a line that says why."""
+    typer.echo(f"firethread: {reason}", err=True)
+    raise typer.Exit(2)
+
+
+@contextmanager
+def refusing(*more: type[Exception]) -> Iterator[None]:
+    """What the caller can mend ends in one line; a defect of ours keeps its traceback."""
+    from backend.errors import Problem
+    from backend.log.migrate import SchemaTooNew
+    from backend.recordings import NotTheDataSet
+
+    try:
+        yield
+    except BrokenPipeError:
+        raise typer.Exit(1) from None  # whoever read our output has had enough
+    except (Problem, SchemaTooNew, NotTheDataSet, OSError, ValueError) as error:
+        refuse(error)
+    except more as error:
+        refuse(error)
+    except KeyError as error:
+        refuse(error.args[0])
+
+
+@app.command()
+def serve(
+    data: Data = Path(".data"),
+    database: Database = None,
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port to listen on; 0 picks a free one.")
+    ] = 8000,
+    open_access: Annotated[
+        bool, typer.Option("--open", help="Ask nobody for the access token; loopback addresses only.")
+    ] = False,
+    worker: Annotated[bool, typer.Option(help="Run an estimator worker beside the web process.")] = True,
+    link: Annotated[
+        str, typer.Option(help="HOST:PORT where workers connect; port 0 picks a free one.")
+    ] = "127.0.0.1:0",
+    demo: Annotated[
+        bool, typer.Option("--demo", help="Play the demo incident through the public API.")
+    ] = False,
+) -> None:
+    """Serve the API and the screen."""
+    from backend import serving
+
+    with refusing(serving.ConfigurationRefused):
+        serving.serve(
+            Settings(
+                data=data,
+                database=database,
+                host=host,
+                port=port,
+                open_access=open_access,
+                worker=worker,
+                link=link,
+                demo=demo,
+            )
+        )
+
+
+@app.command()
+def worker(
+    database: Database = None,
+    data: Data = Path(".data"),
+    link: Annotated[
+        str | None, typer.Option(help="HOST:PORT of the web process; without it the log is polled.")
+    ] = None,
+    holder: Annotated[
+        str, typer.Option(help="Name under which leases are held; one per worker, the same after a restart.")
+    ] = "worker",
+    supervised: Supervised = False,
+) -> None:
+    """Follow the logs of active incidents and estimate positions."""
+    from backend.supervision import end_with_parent
+    from backend.tracking.worker import run_worker
+
+    if supervised:
+        end_with_parent()
+    token = os.environ.get(LINK_TOKEN_VARIABLE, "")
+    if link is not None and not token:
+        refuse(f"--link needs the token that web process and worker share, in {LINK_TOKEN_VARIABLE}")
+    run_worker(Settings(data=data, database=database).database_url, link, token, holder)
+
+
+@app.command()
+def demo(
+    url: Annotated[str, typer.Option(help="Address of the server.")] = "http://127.0.0.1:8000",
+    data: Annotated[
+        Path | None,
+        typer.Option("--data", help="The server's folder, for its access token; not with --open."),
+    ] = None,
+    scenario: Annotated[str, typer.Option(help="Which simulated incident.")] = "office-fire",
+    seed: Annotated[
+        int, typer.Option(min=0, help="Of the first round; each further one takes the next.")
+    ] = 1,
+    speed: Annotated[float, typer.Option(help="How fast; other than 1 only on a recorded clock.")] = 1.0,
+    once: Annotated[bool, typer.Option(help="One round only.")] = False,
+    supervised: Supervised = False,
+) -> None:
+    """Play a simulated incident through the public API, as gateways would."""
+    from backend.authentication import access_token
+    from backend.demo import play_until_stopped
+    from backend.supervision import end_with_parent
+
+    if supervised:
+        end_with_parent()
+    token = None if data is None else access_token(data)
+    with refusing():
+        play_until_stopped(url, token, scenario, seed, speed, once)
+
+
+@app.command("import")
+def import_(
+    file: Annotated[
+        Path, typer.Argument(help="A recorded log, NDJSON; - is standard input.", allow_dash=True)
+    ],
+    incident: Annotated[str, typer.Option(help="Name of the incident that it becomes.")],
+    data: Data = Path(".data"),
+    database: Database = None,
+    clock: Annotated[
+        Clock, typer.Option(help="recorded: its newest reading is now; live: the server's clock.")
+    ] = "recorded",
+    level: Annotated[
+        list[str] | None, typer.Option(help="A storey as NUMBER:NAME:HEIGHT_M; once for each.")
+    ] = None,
+    origin: Annotated[str | None, typer.Option(help="Local origin as LAT,LON,HEIGHT_M in WGS84.")] = None,
+) -> None:
+    """Load a recorded log as a new incident."""
+    from backend import recordings
+
+    data.mkdir(parents=True, exist_ok=True)
+    with refusing():
+        done = recordings.import_log(
+            Settings(data=data, database=database).database_url,
+            incident,
+            file,
+            clock=clock,
+            levels=[recordings.parse_level(text) for text in level or ()],
+            origin=None if origin is None else recordings.parse_origin(origin),
+        )
+    typer.echo(
+        f"incident {done.incident}: {done.batches} batches, {done.accepted} readings, "
+        f"{done.rejected} set aside, {done.duplicates} batches twice in the file"
+    )
+
+
+@app.command()
+def export(
+    incident: Annotated[str, typer.Argument(help="Identifier or unique name.")],
+    data: Data = Path(".data"),
+    database: Database = None,
+) -> None:
+    """Write an incident's log, NDJSON, on standard output."""
+    from backend import recordings
+
+    with refusing():
+        for line in recordings.export_log(Settings(data=data, database=database).database_url, incident):
+            sys.stdout.buffer.write(line)
+
+
+@app.command()
+def convert(
+    name: Annotated[str, typer.Argument(help="The data set, such as plaza1.")],
+    folder: Annotated[Path, typer.Argument(help="Its folder.")],
+) -> None:
+    """Write a public data set as a recorded log, NDJSON, on standard output."""
+    from backend import recordings
+
+    with refusing():
+        for line in recordings.convert(name, folder):
+            sys.stdout.buffer.write(line)
+
+
+@app.command()
+def openapi() -> None:
+    """Write the OpenAPI document on standard output."""
+    from backend.main import build_app
+    from backend.serving import listen
+
+    with TemporaryDirectory() as folder, listen("127.0.0.1", 0) as link:
+        app = build_app(Settings(data=Path(folder)), token=None, link=link, link_token="")
+        sys.stdout.write(json.dumps(app.openapi(), indent=1, ensure_ascii=False) + "\n")
+
+
+bench = typer.Typer(
+    help="The project's own speed tables, each beside what it is compared with.", no_args_is_help=True
+)
+app.add_typer(bench, name="bench")
+
+
+@bench.command("ingest")
+def bench_ingest() -> None:
+    """Telemetry into the log, as a ratio to decoding and one fsync per 32 batches."""
+    from backend.bench import ingest
+
+    ingest.run()
+
+
+@bench.command("replay")
+def bench_replay() -> None:
+    """Reading the log back, as a ratio to decoding in memory."""
+    from backend.bench import replay
+
+    replay.run()
+
+
+@bench.command("fanout")
+def bench_fanout() -> None:
+    """Frames to a thousand sockets, as a ratio to a bare broadcaster."""
+    from backend.bench import fanout
+
+    fanout.run()
+
+
+@bench.command("latency")
+def bench_latency() -> None:
+    """From a gateway's POST to the delta at a screen."""
+    from backend.bench import latency
+
+    latency.run()
+
+
+@bench.command("all")
+def bench_all() -> None:
+    """Every table, one after the other."""
+    for table in (bench_ingest, bench_replay, bench_fanout, bench_latency):
+        table()
+
+
+if __name__ == "__main__":
+    app()

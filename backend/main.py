@@ -1,0 +1,98 @@
+"""The web process, put together: what is constructed, in which order, and which routes there are."""
+
+import socket
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from importlib.metadata import version
+
+from fastapi import FastAPI
+
+from backend import openapi, problems
+from backend.authentication import Authentication, session_router
+from backend.coordination.web_link import WebLink
+from backend.health import health_router
+from backend.incidents.routes import incidents_router
+from backend.ingest.log_route import log_router
+from backend.ingest.route import TelemetryRoute
+from backend.live.hub import Hub
+from backend.live.socket import live_router
+from backend.log.engine import make_engine
+from backend.log.group_commit import GroupCommit
+from backend.log.incidents import IncidentStore
+from backend.log.migrate import prepare
+from backend.log.read import SqlLogReader
+from backend.replay.socket import replay_router
+from backend.screen_files import Screen
+from backend.settings import Settings
+from backend.tracking.routes import tracking_router
+from backend.tracking.smoothing import Smoothing
+
+DESCRIPTION = "Where every firefighter is inside a burning building, how sure that is, and the way out."
+
+
+def build_app(settings: Settings, *, token: str | None, link: socket.socket, link_token: str) -> FastAPI:
+    """The application, its database brought up to date.
+
+    Args:
+        settings: of this process.
+        token: the access token; None lets everybody in.
+        link: listening socket where workers connect.
+        link_token: what they must say.
+
+    Raises:
+        SchemaTooNew: a newer version has written the database.
+    """
+    url = settings.database_url
+    prepare(url)
+    engine = make_engine(url)
+    incidents, reader = IncidentStore(engine), SqlLogReader(engine)
+    writer = GroupCommit(url, settings.queue_bytes)
+    workers = WebLink(link, link_token)
+    hub = Hub(incidents, reader)
+    workers.on_picture(hub.take)
+    smoothing = Smoothing(url)
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        await writer.start()
+        await workers.start()
+        hub.start()
+        try:
+            yield
+        finally:
+            await hub.stop()
+            await workers.stop()
+            smoothing.close()
+            await writer.close()
+            engine.dispose()
+
+    app = FastAPI(
+        title="Firethread",
+        version=version("firethread"),
+        description=DESCRIPTION,
+        lifespan=lifespan,
+        redoc_url=None,
+    )
+    problems.install(app)
+    app.state.telemetry = TelemetryRoute(
+        writer,
+        incidents,
+        max_readings=settings.max_readings,
+        max_body_bytes=settings.max_body_bytes,
+        wake=workers.wake,
+    )
+    app.router.routes.insert(0, app.state.telemetry)
+    for router in (
+        incidents_router(incidents),
+        log_router(reader, incidents),
+        tracking_router(incidents, reader, hub, workers, smoothing),
+        live_router(hub),
+        replay_router(incidents, reader),
+        session_router(token),
+        health_router(engine, workers),
+    ):
+        app.include_router(router)
+    openapi.install(app)
+    app.mount("/", Screen(), name="screen")
+    app.add_middleware(Authentication, token=token)
+    return app

@@ -1,0 +1,114 @@
+"""How FastAPI answers what goes wrong: always in the contract's form."""
+
+from collections.abc import Sequence
+from http import HTTPStatus
+
+import structlog
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+from starlette.routing import compile_path
+
+from backend.errors import (
+    Conflict,
+    FieldError,
+    Invalid,
+    NotAllowed,
+    NotAuthenticated,
+    NotFound,
+    NotUnderstood,
+    Problem,
+    TooBusy,
+    TooLarge,
+    TooSlow,
+    Unavailable,
+    WrongMediaType,
+)
+
+log = structlog.get_logger()
+
+BY_STATUS: dict[int, type[Problem]] = {
+    kind.status: kind
+    for kind in (
+        NotUnderstood,
+        NotAuthenticated,
+        NotFound,
+        NotAllowed,
+        Conflict,
+        TooLarge,
+        WrongMediaType,
+        Invalid,
+        TooBusy,
+        Problem,
+        Unavailable,
+        TooSlow,
+    )
+}
+
+
+def install(app: FastAPI) -> None:
+    """Have every refusal and every defect answered as `application/problem+json`."""
+
+    @app.exception_handler(Problem)
+    async def refused(_: Request, problem: Problem) -> Response:
+        return answer(problem)
+
+    @app.exception_handler(RequestValidationError)
+    async def not_valid(_: Request, error: RequestValidationError) -> Response:
+        return answer(from_validation(error.errors()))
+
+    @app.exception_handler(HTTPException)
+    async def by_status(request: Request, error: HTTPException) -> Response:
+        kind = BY_STATUS.get(error.status_code, Problem)
+        methods = methods_of(request)
+        # The screen's files lie under every path: what no route of the API takes ends there, as not found.
+        if kind is NotFound and methods and request.method not in methods:
+            kind = NotAllowed
+        response = answer(kind(f"{request.method} {request.url.path}: {kind.title.lower()}"))
+        response.headers.update(error.headers or {})
+        if kind is NotAllowed:
+            response.headers["allow"] = ", ".join(sorted(methods))
+        return response
+
+    @app.exception_handler(Exception)
+    async def defect(request: Request, error: Exception) -> Response:
+        log.error("request failed", method=request.method, path=request.url.path, exc_info=error)
+        return answer(Problem("this is a defect of the server, not of the request; its log tells more"))
+
+
+def methods_of(request: Request) -> set[str]:
+    """The methods that a path of the API takes, by the OpenAPI document; none where there is no such path."""
+    return {
+        method.upper()
+        for path, operations in request.app.openapi()["paths"].items()
+        if compile_path(path)[0].match(request.url.path)
+        for method in operations
+    }
+
+
+def answer(problem: Problem) -> Response:
+    """The HTTP response that a problem is."""
+    return Response(problem.body(), problem.status, problem.headers())
+
+
+def from_validation(faults: Sequence[dict[str, object]]) -> Problem:
+    """The problem that pydantic's findings are: 400 where there is no JSON, else 422 by field."""
+    errors = []
+    for fault in faults:
+        if fault["type"] == "json_invalid":
+            return NotUnderstood("the body is no JSON; send one JSON object in UTF-8")
+        place = [str(part) for part in fault["loc"]]  # type: ignore[attr-defined]  # pydantic types it as object
+        errors.append(FieldError(code=str(fault["type"]), field=".".join(place), message=str(fault["msg"])))
+    return Invalid("; ".join(f"{error.field}: {error.message}" for error in errors), errors)
+
+
+def openapi_responses(*statuses: int) -> dict[int | str, dict[str, object]]:
+    """The refusals of a route, for the OpenAPI document."""
+    return {
+        status: {
+            "description": BY_STATUS[status].title if status in BY_STATUS else HTTPStatus(status).phrase,
+            "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}},
+        }
+        for status in statuses
+    }

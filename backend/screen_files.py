@@ -1,0 +1,33 @@
+"""The built screen, served with headers that keep it to itself."""
+
+from pathlib import Path
+
+from starlette.responses import PlainTextResponse, Response
+from starlette.staticfiles import StaticFiles
+from starlette.types import Scope
+
+FOLDER = Path(__file__).parent / "screen"
+CONTENT_SECURITY_POLICY = (
+    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
+    "connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'self'"
+)
+"""Nothing is loaded from elsewhere; Svelte's transitions set inline styles."""
+
+
+class Screen(StaticFiles):
+    """Static files of the built front end; the browser keeps those with a hash in their name."""
+
+    def __init__(self) -> None:
+        super().__init__(directory=FOLDER, html=True, check_dir=False)
+
+    async def get_response(self, path: str, scope: Scope) -> Response:
+        """The file at a path, or a line that says how to build the screen."""
+        if not (FOLDER / "index.html").is_file():
+            return PlainTextResponse("The screen is not built yet: run `make screen`.\n", 503)
+        response = await super().get_response(path, scope)
+        response.headers["Content-Security-Policy"] = CONTENT_SECURITY_POLICY
+        response.headers["X-Content-Type-Options"] = "nosniff"
+        response.headers["Referrer-Policy"] = "no-referrer"
+        immutable = path.startswith("assets/")
+        response.headers["Cache-Control"] = "max-age=31536000, immutable" if immutable else "no-cache"
+        return response
