@@ -1,0 +1,65 @@
+/** What one source tells: its newest picture, its clock, and the state of the way to it. */
+import type { IncidentClock } from "../domain/clock";
+import { type Picture, pictureOf, withDelta } from "../domain/picture";
+import type { DeltaMessage, FrameMessage, HeartbeatMessage } from "../domain/types";
+import { type LinkState, NOT_CONNECTED, type Source } from "../sources/source";
+
+const STANDING: IncidentClock = { t: 0, localMs: 0, rate: 0 };
+
+export interface FeedOwner {
+  /** Incident seconds per local second, between two messages. */
+  rate(): number;
+  /** A frame or delta has changed the picture. */
+  changed(message: FrameMessage | DeltaMessage): void;
+  heartbeat(message: HeartbeatMessage): void;
+  lost(): void;
+}
+
+export class Feed {
+  picture = $state.raw<Picture | null>(null);
+  link = $state.raw<LinkState>(NOT_CONNECTED);
+  clock = $state.raw<IncidentClock>(STANDING);
+  private source: Source | null = null;
+
+  constructor(private readonly owner: FeedOwner) {}
+
+  follow(source: Source): void {
+    this.leave();
+    this.source = source;
+    source.subscribe({
+      frame: (message) => this.take(message, pictureOf(message)),
+      delta: (message) => {
+        if (this.picture !== null) this.take(message, withDelta(this.picture, message));
+      },
+      heartbeat: (message) => {
+        this.owner.heartbeat(message);
+        this.keepTime(message.t);
+      },
+      state: (link) => {
+        const justLost = link.link === "lost" && this.link.link !== "lost";
+        this.link = link;
+        if (justLost) this.owner.lost();
+      },
+    });
+  }
+
+  /** Forgets the source and what it showed. */
+  leave(): void {
+    this.source?.close();
+    this.source = null;
+    this.picture = null;
+    this.link = NOT_CONNECTED;
+    this.clock = STANDING;
+  }
+
+  /** Incident time is `t` now, and goes on from there. */
+  keepTime(t: number): void {
+    this.clock = { t, localMs: performance.now(), rate: this.owner.rate() };
+  }
+
+  private take(message: FrameMessage | DeltaMessage, picture: Picture): void {
+    this.picture = picture;
+    this.keepTime(message.clock_t);
+    this.owner.changed(message);
+  }
+}

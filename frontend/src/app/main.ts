@@ -1,0 +1,19 @@
+import { mount } from "svelte";
+import { takeToken } from "../domain/deep-link";
+import { signIn } from "../sources/api";
+import "../ui/base.css";
+import App from "./App.svelte";
+import { Screen } from "./screen.svelte";
+
+const target = document.getElementById("app");
+if (target === null) throw new Error("index.html has no #app");
+
+const { token, rest } = takeToken(window.location.hash);
+if (token !== null) {
+  history.replaceState(null, "", `${window.location.pathname}${window.location.search}${rest}`);
+  await signIn(token).catch(() => undefined); // a wrong token leads to the sign-in, like none
+}
+
+const screen = new Screen();
+mount(App, { target, props: { screen } });
+void screen.begin();

@@ -1,0 +1,66 @@
+import { expect, test } from "vitest";
+import { board, boardCounts, neighbourOnBoard, radioCounts } from "./accountability";
+import { aNode, anAlarm, NOON, pictureWith, STOREYS } from "./samples";
+import { DEFAULT_LIMITS } from "./staleness";
+
+const picture = pictureWith(
+  aNode({ node: "u1", role: "uav", callsign: "UAV-1", crew: null }),
+  aNode({ node: "ff9", callsign: "Runner", crew: null }),
+  aNode({ node: "ff10", callsign: "E7-10" }),
+  aNode({ node: "ff2", callsign: "E7-2", level: 1, level_p: 0.7 }),
+  aNode({ node: "ff3", callsign: "E5-1", crew: "E5", t: NOON - 30 }),
+  aNode({ node: "ff4", callsign: "E5-2", crew: "E5", t: NOON - 90 }),
+  aNode({ node: "ff5", callsign: "E5-3", crew: "E5", status: "retired" }),
+  aNode({ node: "b1", role: "breadcrumb", callsign: null, crew: null }),
+  aNode({ node: "b2", role: "breadcrumb", callsign: null, crew: null, t: NOON - 100, moved: true }),
+  aNode({ node: "base", role: "base", callsign: null, crew: null, t: NOON - 9999 }),
+);
+const alarms = new Map([["ff2", anAlarm({ node: "ff2" })]]);
+const crews = board(picture, NOON, STOREYS, DEFAULT_LIMITS, alarms);
+
+test("the board goes crew by crew, then those without one, then aircraft", () => {
+  expect(crews.map(({ crew, rows }) => [crew, ...rows.map(({ name }) => name)])).toEqual([
+    ["E5", "E5-1", "E5-2", "E5-3"],
+    ["E7", "E7-2", "E7-10"],
+    ["No crew", "Runner"],
+    ["UAV", "UAV-1"],
+  ]);
+});
+
+test("a row says alarm, status, and the storey with its probability where it is not sure", () => {
+  const row = crews[1]?.rows[0];
+  expect(row).toMatchObject({
+    alarm: "MAYDAY",
+    statusWord: "Live",
+    level: "Level 1, 70 %",
+    levelUnsure: true,
+  });
+  expect(crews[1]?.rows[1]).toMatchObject({ alarm: null, level: "Level G", levelUnsure: false });
+});
+
+test("rows age by themselves, without another word from the server", () => {
+  const later = board(picture, NOON + 70, STOREYS, DEFAULT_LIMITS, alarms);
+  expect(later[1]?.rows[1]).toMatchObject({ status: "lost", age_s: 70 });
+  expect(later[1]?.rows[1]?.error_m).toBeGreaterThan(50);
+});
+
+test("responders are counted by status; aircraft are none, and who has left stands apart", () => {
+  expect(boardCounts(crews)).toEqual({ responders: 5, live: 3, stale: 1, lost: 1, left: 1 });
+});
+
+test("radios that fell silent or were moved are named; the base does not fall silent by age", () => {
+  expect(radioCounts(picture, NOON, DEFAULT_LIMITS)).toEqual({
+    breadcrumbs: 2,
+    others: 1,
+    silent: ["b2"],
+    moved: ["b2"],
+  });
+});
+
+test("next and previous go round the board in its order", () => {
+  expect(neighbourOnBoard(crews, null, 1)).toBe("ff3");
+  expect(neighbourOnBoard(crews, null, -1)).toBe("u1");
+  expect(neighbourOnBoard(crews, "ff5", 1)).toBe("ff2");
+  expect(neighbourOnBoard(crews, "u1", 1)).toBe("ff3");
+  expect(neighbourOnBoard([], "ff1", 1)).toBeNull();
+});

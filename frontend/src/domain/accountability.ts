@@ -1,0 +1,143 @@
+/** The accountability board: every responder by crew, in the order that does not jump about. */
+
+import { ce95 } from "./ellipse";
+import { levelOf, SURE_P } from "./levels";
+import type { Picture } from "./picture";
+import { ageS, covarianceAt, type StalenessLimits, statusAt } from "./staleness";
+import type { FrameAlarm, FrameNode, Level, Status } from "./types";
+import { alarmWord, levelWords, nameOf, percent, statusWord } from "./words";
+
+export interface BoardRow {
+  readonly node: string;
+  readonly name: string;
+  readonly status: Status;
+  readonly statusWord: string;
+  readonly level: string;
+  readonly levelUnsure: boolean;
+  readonly age_s: number;
+  readonly error_m: number | null;
+  readonly air_bar: number | null;
+  readonly battery: number | null;
+  readonly alarm: string | null;
+  readonly state: FrameNode;
+}
+
+export interface BoardCrew {
+  readonly crew: string;
+  readonly rows: readonly BoardRow[];
+}
+
+export interface BoardCounts {
+  readonly responders: number;
+  readonly live: number;
+  readonly stale: number;
+  readonly lost: number;
+  readonly left: number;
+}
+
+const NO_CREW = "No crew";
+const UAVS = "UAV";
+
+/** Rows by crew: named crews in order of name, then those without one, then aircraft. */
+export function board(
+  picture: Picture | null,
+  now: number,
+  levels: readonly Level[],
+  limits: StalenessLimits,
+  alarms: ReadonlyMap<string, FrameAlarm>,
+): BoardCrew[] {
+  const crews = new Map<string, BoardRow[]>();
+  for (const sighting of picture?.nodes.values() ?? []) {
+    const { state } = sighting;
+    if (state.role !== "responder" && state.role !== "uav") continue;
+    const status = statusAt(state, now, limits);
+    const covariance = covarianceAt(sighting, now);
+    const alarm = alarms.get(state.node);
+    const unsure = state.level_p != null && state.level_p < SURE_P;
+    const level = levelWords(levelOf(state, levels), levels);
+    const row: BoardRow = {
+      node: state.node,
+      name: nameOf(state),
+      status,
+      statusWord: statusWord(status),
+      level: unsure && state.level_p != null ? `${level}, ${percent(state.level_p)}` : level,
+      levelUnsure: unsure,
+      age_s: ageS(state, now),
+      error_m: covariance && ce95(covariance),
+      air_bar: state.air_bar ?? null,
+      battery: state.battery ?? null,
+      alarm: alarm ? alarmWord(alarm.alarm) : null,
+      state,
+    };
+    const crew = state.role === "uav" ? UAVS : state.crew || NO_CREW;
+    const rows = crews.get(crew);
+    if (rows) rows.push(row);
+    else crews.set(crew, [row]);
+  }
+  return [...crews]
+    .map(([crew, rows]) => ({ crew, rows: rows.sort(byName) }))
+    .sort((a, b) => crewRank(a.crew) - crewRank(b.crew) || a.crew.localeCompare(b.crew));
+}
+
+/** How many responders there are, and how many of them are live, stale, lost or have left. */
+export function boardCounts(crews: readonly BoardCrew[]): BoardCounts {
+  const counts = { responders: 0, live: 0, stale: 0, lost: 0, left: 0 };
+  for (const { rows } of crews) {
+    for (const { state, status } of rows) {
+      if (state.role !== "responder") continue;
+      if (status === "retired") {
+        counts.left += 1;
+        continue;
+      }
+      counts.responders += 1;
+      counts[status] += 1;
+    }
+  }
+  return counts;
+}
+
+/** Radios that stand: how many, and the names of those that moved or fell silent. */
+export interface RadioCounts {
+  readonly breadcrumbs: number;
+  readonly others: number;
+  readonly silent: readonly string[];
+  readonly moved: readonly string[];
+}
+
+export function radioCounts(picture: Picture | null, now: number, limits: StalenessLimits): RadioCounts {
+  let breadcrumbs = 0;
+  let others = 0;
+  const silent: string[] = [];
+  const moved: string[] = [];
+  for (const { state } of picture?.nodes.values() ?? []) {
+    if (state.role === "responder" || state.role === "uav") continue;
+    const status = statusAt(state, now, limits);
+    if (status === "retired") continue;
+    if (state.role === "breadcrumb") breadcrumbs += 1;
+    else others += 1;
+    if (status !== "live") silent.push(nameOf(state));
+    if (state.moved) moved.push(nameOf(state));
+  }
+  return { breadcrumbs, others, silent, moved };
+}
+
+/** The next (+1) or previous (-1) responder on the board after the selected one, going round. */
+export function neighbourOnBoard(
+  crews: readonly BoardCrew[],
+  selected: string | null,
+  step: 1 | -1,
+): string | null {
+  const nodes = crews.flatMap(({ rows }) => rows.map((row) => row.node));
+  if (nodes.length === 0) return null;
+  const index = selected === null ? -1 : nodes.indexOf(selected);
+  const from = index === -1 && step === -1 ? 0 : index;
+  return nodes[(from + step + nodes.length) % nodes.length] ?? null;
+}
+
+function crewRank(crew: string): number {
+  return crew === UAVS ? 2 : crew === NO_CREW ? 1 : 0;
+}
+
+function byName(a: BoardRow, b: BoardRow): number {
+  return a.name.localeCompare(b.name, undefined, { numeric: true });
+}

@@ -1,0 +1,46 @@
+import { expect, test } from "vitest";
+import { crewMarks, markOf } from "./crews";
+import { aNode } from "./samples";
+
+const crews = (...names: string[]) => crewMarks(names.map((crew) => aNode({ crew })));
+
+/** Contrast of two colours by WCAG 2.2. */
+function contrast(a: string, b: string): number {
+  const luminance = (colour: string) => {
+    const [r = 0, g = 0, blue = 0] = [1, 3, 5].map((at) => {
+      const value = Number.parseInt(colour.slice(at, at + 2), 16) / 255;
+      return value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
+    });
+    return 0.2126 * r + 0.7152 * g + 0.0722 * blue;
+  };
+  const [low = 0, high = 0] = [luminance(a), luminance(b)].sort((x, y) => x - y);
+  return (high + 0.05) / (low + 0.05);
+}
+
+test("crews get the same marks in whatever order they come, so that all screens agree", () => {
+  expect([...crews("E7", "E5", "T1")]).toEqual([...crews("T1", "E5", "E7")]);
+});
+
+test("a mark carries letters of its crew as well as a colour", () => {
+  expect(crews("Truck 12").get("Truck 12")?.letters).toBe("Tru");
+  expect(crews("!").get("!")?.letters).toBe("?");
+});
+
+test("letters can be read on every crew's colour", () => {
+  for (const mark of crews("1", "2", "3", "4", "5", "6", "7").values()) {
+    expect(contrast(mark.colour, mark.ink)).toBeGreaterThanOrEqual(4.5);
+  }
+});
+
+test("no crew has a colour near the red of alarms", () => {
+  for (const { colour } of crews("1", "2", "3", "4", "5", "6").values()) {
+    const [r = 0, g = 0, b = 0] = [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
+    expect(r > 150 && g < 100 && b < 100).toBe(false);
+  }
+});
+
+test("aircraft and responders without a crew have marks of their own", () => {
+  const marks = crews("E7");
+  expect(markOf(aNode({ role: "uav" }), marks).letters).toBe("UAV");
+  expect(markOf(aNode({ crew: null }), marks).letters).toBe("–");
+});

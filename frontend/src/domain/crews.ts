@@ -1,0 +1,44 @@
+/** A crew's mark: an Okabe–Ito colour, never alone, always with its letters. */
+import type { FrameNode } from "./types";
+
+export interface CrewMark {
+  readonly letters: string;
+  readonly colour: string;
+  /** Colour of letters on `colour`, at least 4.5 : 1. */
+  readonly ink: string;
+}
+
+const DARK = "#101418";
+/** Okabe and Ito (2008) without vermillion, which is too near to the red of alarms, and black. */
+const COLOURS: readonly { colour: string; ink: string }[] = [
+  { colour: "#56b4e9", ink: DARK },
+  { colour: "#e69f00", ink: DARK },
+  { colour: "#009e73", ink: DARK },
+  { colour: "#f0e442", ink: DARK },
+  { colour: "#cc79a7", ink: DARK },
+  { colour: "#0072b2", ink: "#ffffff" },
+];
+const NO_CREW: CrewMark = { letters: "–", colour: "#aab2ba", ink: DARK };
+const UAV: CrewMark = { letters: "UAV", colour: "#aab2ba", ink: DARK };
+
+/** The crew's name as far as a mark has room for it: its first three letters or digits. */
+function lettersOf(crew: string): string {
+  return crew.replace(/[^\p{L}\p{N}]/gu, "").slice(0, 3) || "?";
+}
+
+/** A mark for each crew; colours go round in the order of the names, so all screens agree. */
+export function crewMarks(nodes: Iterable<FrameNode>): Map<string, CrewMark> {
+  const names = new Set<string>();
+  for (const node of nodes) if (node.crew) names.add(node.crew);
+  const marks = new Map<string, CrewMark>();
+  for (const crew of [...names].sort((a, b) => a.localeCompare(b))) {
+    const colours = COLOURS[marks.size % COLOURS.length] ?? NO_CREW;
+    marks.set(crew, { letters: lettersOf(crew), colour: colours.colour, ink: colours.ink });
+  }
+  return marks;
+}
+
+export function markOf(node: FrameNode, marks: ReadonlyMap<string, CrewMark>): CrewMark {
+  if (node.role === "uav") return UAV;
+  return (node.crew && marks.get(node.crew)) || NO_CREW;
+}

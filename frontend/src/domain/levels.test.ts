@@ -1,0 +1,54 @@
+import { expect, test } from "vitest";
+import { levelButtons, levelOf, neighbourLevel } from "./levels";
+import { aNode, pictureWith, STOREYS } from "./samples";
+
+test("the estimator's word on the storey stands before the height", () => {
+  expect(levelOf(aNode({ level: 2, position_m: [0, 0, 0] }), STOREYS)).toBe(2);
+});
+
+test.each([
+  [0, 0],
+  [2.3, 0],
+  [2.5, 1],
+  [4, 1],
+  [9, 2],
+  [-3, 0],
+])("a responder at %d m stands on storey %d", (up_m, level) => {
+  expect(levelOf(aNode({ position_m: [0, 0, up_m] }), STOREYS)).toBe(level);
+});
+
+test("without a position or without storeys the level is unknown", () => {
+  expect(levelOf(aNode({ position_m: null }), STOREYS)).toBeNull();
+  expect(levelOf(aNode(), [])).toBeNull();
+});
+
+const picture = pictureWith(
+  aNode({ node: "ff1", level: 1 }),
+  aNode({ node: "ff2", level: 1 }),
+  aNode({ node: "ff3", level: 0 }),
+  aNode({ node: "gone", level: 0, status: "retired" }),
+  aNode({ node: "b1", role: "breadcrumb", level: 2 }),
+);
+
+test("storey buttons stand as the building does and count the responders on each", () => {
+  const buttons = levelButtons(picture, STOREYS, new Set(["ff2"]));
+  expect(buttons.map(({ name, responders, alarms }) => [name, responders, alarms])).toEqual([
+    ["All", 3, 1],
+    ["2", 0, 0],
+    ["1", 2, 1],
+    ["G", 1, 0],
+  ]);
+});
+
+test("a storey that only a responder knows of gets its button", () => {
+  const buttons = levelButtons(pictureWith(aNode({ level: -1 })), STOREYS, new Set());
+  expect(buttons.at(-1)).toMatchObject({ level: -1, name: "-1", responders: 1 });
+});
+
+test("going up ends at all storeys, going down at the lowest", () => {
+  const buttons = levelButtons(picture, STOREYS, new Set());
+  expect(neighbourLevel(1, 1, buttons)).toBe(2);
+  expect(neighbourLevel(2, 1, buttons)).toBe("all");
+  expect(neighbourLevel("all", 1, buttons)).toBe("all");
+  expect(neighbourLevel(0, -1, buttons)).toBe(0);
+});

@@ -1,0 +1,72 @@
+/** Storeys: on which one a node is, which there are, how many responders each holds. */
+import type { Picture } from "./picture";
+import type { FrameNode, Level } from "./types";
+
+/** The storey shown: one, or all of them. */
+export type LevelChoice = number | "all";
+
+/** Below this probability the storey is said with it. */
+export const SURE_P = 0.95;
+
+/** A node this far above a storey's floor still belongs to it rather than to the next (m). */
+const BELOW_FLOOR_M = 0.8;
+
+/** The node's level: what the estimator says, else the storey whose floor is next below it. */
+export function levelOf(node: FrameNode, levels: readonly Level[]): number | null {
+  if (node.level != null) return node.level;
+  const up_m = node.position_m?.[2];
+  if (up_m === undefined || levels.length === 0) return null;
+  let best: Level | null = null;
+  for (const level of levels) {
+    if (level.up_m <= up_m + BELOW_FLOOR_M && (best === null || level.up_m > best.up_m)) best = level;
+  }
+  return (best ?? levels.reduce((low, level) => (level.up_m < low.up_m ? level : low))).level;
+}
+
+export interface LevelButton {
+  readonly level: LevelChoice;
+  readonly name: string;
+  readonly responders: number;
+  readonly alarms: number;
+}
+
+/** A button per storey, the highest first as a building stands, and one for all of them on top. */
+export function levelButtons(
+  picture: Picture | null,
+  levels: readonly Level[],
+  inAlarm: ReadonlySet<string>,
+): LevelButton[] {
+  const names = new Map(levels.map((level) => [level.level, level.name]));
+  const responders = new Map<number, number>();
+  const alarms = new Map<number, number>();
+  let all = 0;
+  for (const { state } of picture?.nodes.values() ?? []) {
+    if (state.role !== "responder" || state.status === "retired") continue;
+    all += 1;
+    const level = levelOf(state, levels);
+    if (level === null) continue;
+    if (!names.has(level)) names.set(level, String(level));
+    responders.set(level, (responders.get(level) ?? 0) + 1);
+    if (inAlarm.has(state.node)) alarms.set(level, (alarms.get(level) ?? 0) + 1);
+  }
+  const storeys = [...names.keys()]
+    .sort((a, b) => b - a)
+    .map((level) => ({
+      level,
+      name: names.get(level) ?? String(level),
+      responders: responders.get(level) ?? 0,
+      alarms: alarms.get(level) ?? 0,
+    }));
+  return [{ level: "all", name: "All", responders: all, alarms: inAlarm.size }, ...storeys];
+}
+
+/** The storey above (+1) or below (-1) the chosen one; "all" lies above the highest. */
+export function neighbourLevel(
+  choice: LevelChoice,
+  step: 1 | -1,
+  buttons: readonly LevelButton[],
+): LevelChoice {
+  const index = buttons.findIndex((button) => button.level === choice);
+  const next = buttons[Math.min(buttons.length - 1, Math.max(0, index - step))];
+  return next?.level ?? "all";
+}

@@ -1,0 +1,46 @@
+/** The picture on the screen: the newest frame with the deltas since, as an immutable value. */
+import type { DeltaMessage, FrameAlarm, FrameMessage, FrameNode } from "./types";
+
+/** A node as the server presented it, and the incident time at which it did. */
+export interface Sighting {
+  readonly state: FrameNode;
+  readonly presentedT: number;
+}
+
+export interface Picture {
+  readonly incident: string;
+  readonly seq: number;
+  readonly t: number;
+  /** What "now" was for the incident when this came (Unix s). */
+  readonly clockT: number;
+  readonly nodes: ReadonlyMap<string, Sighting>;
+  readonly alarms: readonly FrameAlarm[];
+}
+
+/** The picture that a whole frame shows. */
+export function pictureOf(frame: FrameMessage): Picture {
+  const nodes = new Map<string, Sighting>();
+  for (const state of frame.nodes) nodes.set(state.node, { state, presentedT: frame.clock_t });
+  return {
+    incident: frame.incident,
+    seq: frame.seq,
+    t: frame.t,
+    clockT: frame.clock_t,
+    nodes,
+    alarms: frame.alarms,
+  };
+}
+
+/** The picture after a delta: its nodes replace theirs whole, its alarms are all that stand. */
+export function withDelta(picture: Picture, delta: DeltaMessage): Picture {
+  const nodes = new Map(picture.nodes);
+  for (const state of delta.nodes) nodes.set(state.node, { state, presentedT: delta.clock_t });
+  return {
+    ...picture,
+    seq: delta.seq,
+    t: delta.t,
+    clockT: delta.clock_t,
+    nodes,
+    alarms: delta.alarms,
+  };
+}

@@ -1,0 +1,31 @@
+import { expect, test } from "vitest";
+import { NOON } from "./samples";
+import { beforeEnd, clockTime, dateTime } from "./time";
+
+test("a time of day is local and has seconds", () => {
+  const local = new Date(NOON * 1000);
+  const [hours, minutes, seconds] =
+    clockTime(NOON + 7)
+      .match(/\d+/g)
+      ?.map(Number) ?? [];
+  expect([hours, minutes, seconds]).toEqual([local.getHours(), local.getMinutes(), 7]);
+});
+
+test("midnight is 00, never 24", () => {
+  const midnight = new Date(2026, 0, 5, 0, 0, 0).getTime() / 1000;
+  expect(clockTime(midnight)).toMatch(/^00/);
+});
+
+test("a date names the year and the time", () => {
+  expect(dateTime(NOON)).toContain(String(new Date(NOON * 1000).getFullYear()));
+  expect(dateTime(NOON)).toContain(clockTime(NOON));
+});
+
+test.each([
+  [0, "0:00"],
+  [-3, "0:00"],
+  [65, "−1:05"],
+  [3661, "−1:01:01"],
+])("%d s before the end reads %s", (seconds, text) => {
+  expect(beforeEnd(seconds)).toBe(text);
+});

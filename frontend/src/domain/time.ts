@@ -1,0 +1,29 @@
+/** Times as the commander reads them: local, with seconds. */
+
+const CLOCK = new Intl.DateTimeFormat(undefined, {
+  hour: "2-digit",
+  minute: "2-digit",
+  second: "2-digit",
+  hourCycle: "h23",
+});
+const DAY = new Intl.DateTimeFormat(undefined, { day: "numeric", month: "short", year: "numeric" });
+
+/** "21:04:10" of a Unix time in seconds. */
+export function clockTime(t: number): string {
+  return CLOCK.format(new Date(t * 1000));
+}
+
+/** "20 Nov 2025, 21:04:10". */
+export function dateTime(t: number): string {
+  return `${DAY.format(new Date(t * 1000))}, ${clockTime(t)}`;
+}
+
+/** How far before the end: "−3:05", "−1:02:00", "0:00". */
+export function beforeEnd(seconds: number): string {
+  const whole = Math.max(0, Math.round(seconds));
+  const two = (value: number) => String(value).padStart(2, "0");
+  const hours = Math.floor(whole / 3600);
+  const minutes = Math.floor((whole % 3600) / 60);
+  const text = hours > 0 ? `${hours}:${two(minutes)}:${two(whole % 60)}` : `${minutes}:${two(whole % 60)}`;
+  return whole === 0 ? text : `−${text}`;
+}

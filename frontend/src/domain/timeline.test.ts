@@ -1,0 +1,75 @@
+import { describe, expect, test } from "vitest";
+import { anAlarm, anIncident, NOON } from "./samples";
+import { dropMarks, extentOf, type Mark, neighbourMark, nextSpeed, withAlarmMarks, within } from "./timeline";
+import type { Track } from "./types";
+
+const UNSEEN = Number.POSITIVE_INFINITY;
+
+const track = (node: string, t: number): Track => ({ node, points: [[t, 0, 0, 0, 1, 0, 0, 1, 0, 1]] });
+
+test("speeds go from a half to 32 and stop there", () => {
+  expect([
+    nextSpeed(1, 1),
+    nextSpeed(1, -1),
+    nextSpeed(32, 1),
+    nextSpeed(0.5, -1),
+    nextSpeed(99, -1),
+  ]).toEqual([2, 0.5, 32, 0.5, 16]);
+});
+
+describe("the bar", () => {
+  test("begins no later than what this screen has seen, though no row of it is stored yet", () => {
+    expect(extentOf(anIncident({ first_t: null }), [], NOON + 2, NOON + 60).from).toBe(NOON + 2);
+  });
+
+  test("begins at the first second that can be shown, or the first point of a track", () => {
+    expect(extentOf(anIncident({ first_t: NOON + 5 }), [], UNSEEN, NOON + 60).from).toBe(NOON + 5);
+    expect(
+      extentOf(anIncident(), [track("ff1", NOON + 9), track("b1", NOON + 7)], UNSEEN, NOON + 60).from,
+    ).toBe(NOON + 7);
+  });
+
+  test("of a live incident without any point begins when it was created", () => {
+    expect(extentOf(anIncident(), [], UNSEEN, NOON + 60)).toEqual({ from: NOON, to: NOON + 60 });
+  });
+
+  test("is never empty", () => {
+    expect(extentOf(null, [], UNSEEN, NOON)).toEqual({ from: NOON - 1, to: NOON });
+  });
+
+  test("holds every time that is asked for", () => {
+    const extent = { from: 10, to: 20 };
+    expect([5, 15, 25].map((t) => within(extent, t))).toEqual([10, 15, 20]);
+  });
+});
+
+test("a breadcrumb was dropped where its track begins; responders drop no mark", () => {
+  expect(dropMarks([track("b1", NOON), track("ff1", NOON)], new Set(["b1"]))).toEqual([
+    { t: NOON, kind: "drop", text: "b1 dropped" },
+  ]);
+});
+
+describe("alarm marks", () => {
+  const first = withAlarmMarks([], [anAlarm()], () => "E7-1");
+
+  test("say which alarm and who", () => {
+    expect(first).toEqual([{ t: NOON, kind: "alarm", text: "MAYDAY E7-1" }]);
+  });
+
+  test("are set once, and not for acknowledging", () => {
+    const acknowledged = anAlarm({ state: "acknowledged" });
+    expect(withAlarmMarks(first, [anAlarm(), acknowledged], () => "E7-1")).toBe(first);
+  });
+
+  test("stay in the order of time", () => {
+    const both = withAlarmMarks(first, [anAlarm({ t: NOON - 60 })], () => "E7-1");
+    expect(both.map(({ t }) => t)).toEqual([NOON - 60, NOON]);
+  });
+});
+
+test("the next and the previous mark are the nearest ones on either side", () => {
+  const marks: Mark[] = [10, 20, 30].map((t) => ({ t, kind: "drop", text: "" }));
+  expect(neighbourMark(marks, 20, 1)?.t).toBe(30);
+  expect(neighbourMark(marks, 20, -1)?.t).toBe(10);
+  expect(neighbourMark(marks, 30, 1)).toBeNull();
+});

@@ -1,0 +1,71 @@
+/** The one bar for live and replay: its ends, its speeds, its marks. */
+import type { FrameAlarm, Incident, Track } from "./types";
+import { alarmWord } from "./words";
+
+export interface Extent {
+  readonly from: number;
+  readonly to: number;
+}
+
+export interface Mark {
+  readonly t: number;
+  readonly kind: "alarm" | "drop";
+  readonly text: string;
+}
+
+export const SPEEDS = [0.5, 1, 2, 4, 8, 16, 32] as const;
+
+/** The next faster (+1) or slower (-1) speed. */
+export function nextSpeed(speed: number, step: 1 | -1): number {
+  const index = SPEEDS.findIndex((known) => known >= speed);
+  const at = index === -1 ? SPEEDS.length - 1 : index;
+  return SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, at + step))] ?? 1;
+}
+
+export function within(extent: Extent, t: number): number {
+  return Math.min(extent.to, Math.max(extent.from, t));
+}
+
+/** What the bar spans: from the first thing known to now; never less than a second. */
+export function extentOf(
+  incident: Incident | null,
+  tracks: readonly Track[],
+  earliestT: number,
+  newestT: number,
+): Extent {
+  let from = Math.min(incident?.first_t ?? Number.POSITIVE_INFINITY, earliestT);
+  for (const { points } of tracks) if (points[0]) from = Math.min(from, points[0][0]);
+  if (!Number.isFinite(from)) from = incident?.clock === "live" ? incident.created : newestT;
+  return { from: Math.min(from, newestT - 1), to: newestT };
+}
+
+/** A drop for each breadcrumb where its track begins. */
+export function dropMarks(tracks: readonly Track[], breadcrumbs: ReadonlySet<string>): Mark[] {
+  return tracks.flatMap(({ node, points }) =>
+    points[0] && breadcrumbs.has(node)
+      ? [{ t: points[0][0], kind: "drop" as const, text: `${node} dropped` }]
+      : [],
+  );
+}
+
+/** Adds the raised alarms not marked yet; the very same array where nothing is new. */
+export function withAlarmMarks(
+  marks: readonly Mark[],
+  alarms: readonly FrameAlarm[],
+  name: (node: string) => string,
+): readonly Mark[] {
+  const fresh = alarms
+    .filter(({ state }) => state !== "cleared")
+    .map(
+      (alarm): Mark => ({ t: alarm.t, kind: "alarm", text: `${alarmWord(alarm.alarm)} ${name(alarm.node)}` }),
+    )
+    .filter((mark) => !marks.some((known) => known.t === mark.t && known.text === mark.text));
+  return fresh.length === 0 ? marks : [...marks, ...fresh].sort((a, b) => a.t - b.t);
+}
+
+/** The nearest mark after (+1) or before (-1) `t`; null where there is none. */
+export function neighbourMark(marks: readonly Mark[], t: number, step: 1 | -1): Mark | null {
+  const beyond = marks.filter((mark) => (mark.t - t) * step > 0.5);
+  beyond.sort((a, b) => Math.abs(a.t - t) - Math.abs(b.t - t));
+  return beyond[0] ?? null;
+}

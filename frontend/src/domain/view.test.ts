@@ -1,0 +1,101 @@
+import { describe, expect, test } from "vitest";
+import * as views from "./view";
+
+const view: views.View = { east_m: 10, north_m: -5, pixelsPerMetre: 8, width: 800, height: 600 };
+const margins: views.Margins = { left: 100, right: 20, top: 40, bottom: 60 };
+
+test("east is right and north is up", () => {
+  const [x, y] = views.toScreen(view, 11, -4);
+  expect([x, y]).toEqual([408, 292]);
+});
+
+test("a pixel and its place in metres are each other's inverse", () => {
+  const [e, n] = views.toLocal(view, 123, 456);
+  expect(views.toScreen(view, e, n)[0]).toBeCloseTo(123);
+  expect(views.toScreen(view, e, n)[1]).toBeCloseTo(456);
+});
+
+test("what was under the finger stays under it while the map is dragged", () => {
+  const under = views.toLocal(view, 300, 200);
+  const after = views.toLocal(views.pan(view, 30, -70), 330, 130);
+  expect(after[0]).toBeCloseTo(under[0]);
+  expect(after[1]).toBeCloseTo(under[1]);
+});
+
+test.each([1.4, 0.3, 1e9, 1e-9])("zooming by %d keeps the place under the pointer", (factor) => {
+  const under = views.toLocal(view, 120, 500);
+  const zoomed = views.zoomAbout(view, factor, 120, 500);
+  expect(views.toLocal(zoomed, 120, 500)[0]).toBeCloseTo(under[0]);
+  expect(views.toLocal(zoomed, 120, 500)[1]).toBeCloseTo(under[1]);
+  expect(zoomed.pixelsPerMetre).toBeLessThanOrEqual(views.MAX_PIXELS_PER_METRE);
+  expect(zoomed.pixelsPerMetre).toBeGreaterThanOrEqual(views.MIN_PIXELS_PER_METRE);
+});
+
+test("two fingers without a turn keep the places under both", () => {
+  const pinched = views.pinch(
+    view,
+    [
+      [100, 100],
+      [200, 100],
+    ],
+    [
+      [150, 180],
+      [350, 180],
+    ],
+  );
+  expect(pinched.pixelsPerMetre).toBeCloseTo(16);
+  for (const [before, after] of [
+    [
+      [100, 100],
+      [150, 180],
+    ],
+    [
+      [200, 100],
+      [350, 180],
+    ],
+  ] as const) {
+    const place = views.toLocal(view, before[0], before[1]);
+    expect(views.toScreen(pinched, place[0], place[1])[0]).toBeCloseTo(after[0]);
+    expect(views.toScreen(pinched, place[0], place[1])[1]).toBeCloseTo(after[1]);
+  }
+});
+
+describe("fitting", () => {
+  const bounds: views.Bounds = { west_m: -20, east_m: 60, south_m: 0, north_m: 30 };
+
+  test("puts all corners inside the margins and needs no second fit", () => {
+    const fitted = views.fitted(view, bounds, margins);
+    const [left, bottom] = views.toScreen(fitted, bounds.west_m, bounds.south_m);
+    const [right, top] = views.toScreen(fitted, bounds.east_m, bounds.north_m);
+    expect(left).toBeGreaterThanOrEqual(99.99);
+    expect(right).toBeLessThanOrEqual(780.01);
+    expect(top).toBeGreaterThanOrEqual(39.99);
+    expect(bottom).toBeLessThanOrEqual(540.01);
+    expect(views.fitsWell(fitted, bounds, margins)).toBe(true);
+  });
+
+  test("is wanted again once somebody walks off the map, or all have come close together", () => {
+    const fitted = views.fitted(view, bounds, margins);
+    expect(views.fitsWell(fitted, { ...bounds, east_m: 200 }, margins)).toBe(false);
+    expect(views.fitsWell(fitted, { west_m: 0, east_m: 8, south_m: 0, north_m: 8 }, margins)).toBe(false);
+  });
+
+  test("does not fill the map with one lone responder", () => {
+    const alone = { west_m: 3, east_m: 3, south_m: 4, north_m: 4 };
+    expect(views.fitted(view, alone, margins).pixelsPerMetre).toBeLessThan(60);
+  });
+});
+
+test("the map moves to a selected node only if it is off the map", () => {
+  expect(views.bringIntoView(view, 10, -5, margins)).toBe(view);
+  expect(views.bringIntoView(view, 500, 0, margins)).toMatchObject({ east_m: 500, north_m: 0 });
+});
+
+test("bounds hold every position, and there are none of nothing", () => {
+  const positions: [number, number, number][] = [
+    [1, 2, 0],
+    [-3, 8, 0],
+  ];
+  expect(views.boundsOf(positions)).toEqual({ west_m: -3, east_m: 1, south_m: 2, north_m: 8 });
+  expect(views.boundsOf([])).toBeNull();
+});

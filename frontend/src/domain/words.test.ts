@@ -1,0 +1,57 @@
+import { expect, test } from "vitest";
+import { aNode, STOREYS } from "./samples";
+import * as words from "./words";
+
+test.each([
+  [0, "0 s ago"],
+  [12.9, "12 s ago"],
+  [185, "3 min 05 s ago"],
+  [7440, "2 h 04 min ago"],
+  [-4, "0 s ago"],
+])("an age of %d s reads %s", (age, text) => {
+  expect(words.agoWords(age)).toBe(text);
+});
+
+test.each([
+  [119, "119 s"],
+  [120, "2 min"],
+  [7200, "2 h"],
+])("beside a mark %d s reads %s", (age, text) => {
+  expect(words.shortAge(age)).toBe(text);
+});
+
+test("a responder is called by callsign, else by the node's own name", () => {
+  expect(words.nameOf(aNode({ callsign: "E7-2" }))).toBe("E7-2");
+  expect(words.nameOf(aNode({ callsign: null }))).toBe("ff1");
+});
+
+test("levels are called by their spoken names, and unknown ones say so", () => {
+  expect(words.levelWords(0, STOREYS)).toBe("Level G");
+  expect(words.levelWords(7, STOREYS)).toBe("Level 7");
+  expect(words.levelWords(0, [{ level: 0, name: "Mezzanine", up_m: 0 }])).toBe("Mezzanine");
+  expect(words.levelWords(null, STOREYS)).toBe("level unknown");
+});
+
+test("a probability never claims to be certain by rounding", () => {
+  expect([1, 0.999, 0.93, 0.001, 0].map(words.percent)).toEqual(["100 %", "> 99 %", "93 %", "< 1 %", "0 %"]);
+});
+
+test.each([
+  [0, "090°"],
+  [Math.PI / 2, "000°"],
+  [Math.PI, "270°"],
+  [-Math.PI / 2, "180°"],
+  [Math.PI / 2 + 0.001, "000°"],
+])("a heading of %d rad from east is a compass bearing of %s", (heading, text) => {
+  expect(words.compassBearing(heading)).toBe(text);
+});
+
+test("air and battery that were not reported are not made up", () => {
+  expect([words.airWords(null), words.batteryWords(null)]).toEqual(["not reported", "not reported"]);
+  expect([words.airWords(0), words.batteryWords(0)]).toEqual(["0 bar", "0 %"]);
+  expect([words.airWords(182.4), words.batteryWords(0.8)]).toEqual(["182 bar", "80 %"]);
+});
+
+test("lengths carry their unit and no more digits than matter", () => {
+  expect([0.84, 12.44, 130.4, -250.2].map(words.metres)).toEqual(["0.8 m", "12.4 m", "130 m", "-250 m"]);
+});

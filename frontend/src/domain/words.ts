@@ -1,0 +1,95 @@
+/** What the screen says, in the words of the field. */
+import type { FrameAlarm, FrameNode, Level, Status } from "./types";
+
+const STATUS_WORDS: Record<Status, string> = {
+  live: "Live",
+  stale: "Stale",
+  lost: "Lost",
+  retired: "Left",
+};
+
+const ALARM_WORDS: Record<FrameAlarm["alarm"], string> = {
+  mayday: "MAYDAY",
+  pass: "PASS",
+  evacuate: "EVACUATE",
+  help: "HELP",
+};
+
+export function statusWord(status: Status): string {
+  return STATUS_WORDS[status];
+}
+
+export function alarmWord(alarm: FrameAlarm["alarm"]): string {
+  return ALARM_WORDS[alarm];
+}
+
+/** An age in seconds as "12 s", "3 min 05 s", "2 h 04 min". */
+export function ageWords(age_s: number): string {
+  const whole = Math.max(0, Math.floor(age_s));
+  if (whole < 60) return `${whole} s`;
+  if (whole < 3600) return `${Math.floor(whole / 60)} min ${two(whole % 60)} s`;
+  return `${Math.floor(whole / 3600)} h ${two(Math.floor((whole % 3600) / 60))} min`;
+}
+
+/** An age beside a mark on the map, where there is room for one unit only: "12 s", "3 min", "2 h". */
+export function shortAge(age_s: number): string {
+  const whole = Math.max(0, Math.floor(age_s));
+  if (whole < 120) return `${whole} s`;
+  if (whole < 7200) return `${Math.floor(whole / 60)} min`;
+  return `${Math.floor(whole / 3600)} h`;
+}
+
+export function agoWords(age_s: number): string {
+  return `${ageWords(age_s)} ago`;
+}
+
+/** The callsign, and the node's own name where it has none. */
+export function nameOf(node: FrameNode): string {
+  return node.callsign || node.node;
+}
+
+/** The spoken name of a level: the incident's own, else the bare number. */
+export function levelName(level: number | null | undefined, levels: readonly Level[]): string {
+  if (level == null) return "level unknown";
+  return levels.find((known) => known.level === level)?.name ?? String(level);
+}
+
+/** A level as the list says it: "Level 1" or, for names that say it themselves, the name alone. */
+export function levelWords(level: number | null | undefined, levels: readonly Level[]): string {
+  const name = levelName(level, levels);
+  return level == null || name.length > 3 ? name : `Level ${name}`;
+}
+
+/** A probability as "93 %"; never 100 % or 0 % where it is not certain. */
+export function percent(p: number): string {
+  const rounded = Math.round(p * 100);
+  if (rounded >= 100 && p < 1) return "> 99 %";
+  if (rounded <= 0 && p > 0) return "< 1 %";
+  return `${rounded} %`;
+}
+
+/** Metres with as many digits as matter: "0.8 m", "12.4 m", "130 m". */
+export function metres(value_m: number): string {
+  return `${Math.abs(value_m) >= 100 ? value_m.toFixed(0) : value_m.toFixed(1)} m`;
+}
+
+/** A heading as a compass bearing, clockwise from north: "074°". */
+export function compassBearing(heading_rad: number): string {
+  const degrees = 90 - (heading_rad * 180) / Math.PI;
+  const wrapped = Math.round(((degrees % 360) + 360) % 360) % 360;
+  return `${String(wrapped).padStart(3, "0")}°`;
+}
+
+/** A charge of 0 to 1 as "80 %". */
+export function batteryWords(battery: number | null | undefined): string {
+  if (battery == null) return "not reported";
+  return `${Math.round(battery * 100)} %`;
+}
+
+export function airWords(air_bar: number | null | undefined): string {
+  return air_bar == null ? "not reported" : `${Math.round(air_bar)} bar`;
+}
+
+function two(value: number): string {
+  return String(value).padStart(2, "0");
+}

@@ -1,0 +1,50 @@
+/** How sure each fix is: the filled and bordered 95 % ellipse, never a fade, never too small to see. */
+import { markOf } from "../domain/crews";
+import { ellipseOf } from "../domain/ellipse";
+import { covarianceAt, statusAt } from "../domain/staleness";
+import type { Status } from "../domain/types";
+import type { Layer, Placed, Scene } from "./layer";
+import { movers, radios } from "./place";
+
+const LEAST_PX = 9;
+/** Dash of the border by status: whole, broken, dotted. */
+export const DASHES: Record<Status, number[]> = { live: [], stale: [9, 5], lost: [2, 6], retired: [1, 8] };
+
+export const ellipses: Layer = {
+  draw(context, scene) {
+    context.save();
+    const chosen = radios(scene).filter(({ node }) => node.node === scene.selected);
+    for (const place of [...chosen, ...movers(scene)]) {
+      if (!place.elsewhere && place.node.status !== "retired") draw(context, scene, place);
+    }
+    context.restore();
+  },
+};
+
+function draw(context: CanvasRenderingContext2D, scene: Scene, { node, x, y }: Placed): void {
+  const sighting = scene.picture?.nodes.get(node.node);
+  const covariance = sighting && covarianceAt(sighting, scene.now);
+  if (!covariance) return;
+  const { major_m, minor_m, angle_rad } = ellipseOf(covariance);
+  const selected = node.node === scene.selected;
+  context.beginPath();
+  context.ellipse(
+    x,
+    y,
+    Math.max(LEAST_PX, major_m * scene.view.pixelsPerMetre),
+    Math.max(LEAST_PX, minor_m * scene.view.pixelsPerMetre),
+    -angle_rad,
+    0,
+    2 * Math.PI,
+  );
+  const colour = scene.alarms.has(node.node) ? scene.palette.alarm : markOf(node, scene.crews).colour;
+  context.fillStyle = colour;
+  context.globalAlpha = selected ? 0.26 : 0.15;
+  context.fill();
+  context.globalAlpha = 0.95;
+  context.strokeStyle = colour;
+  context.lineWidth = selected ? 3 : 1.75;
+  context.setLineDash(DASHES[statusAt(node, scene.now, scene.limits)]);
+  context.stroke();
+  context.setLineDash([]);
+}

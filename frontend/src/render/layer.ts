@@ -1,0 +1,40 @@
+/** What a map layer is: it draws one kind of thing of a scene. A new layer is one new file. */
+import type { CrewMark } from "../domain/crews";
+import type { LevelChoice } from "../domain/levels";
+import type { Picture } from "../domain/picture";
+import type { StalenessLimits } from "../domain/staleness";
+import type { Trails } from "../domain/trails";
+import type { FrameAlarm, FrameNode, Level } from "../domain/types";
+import type { View } from "../domain/view";
+import type { Palette } from "../ui/themes";
+
+/** Everything that the map shows, at one moment. */
+export interface Scene {
+  readonly view: View;
+  readonly palette: Palette;
+  readonly picture: Picture | null;
+  /** Incident time (Unix s). */
+  readonly now: number;
+  readonly levels: readonly Level[];
+  readonly level: LevelChoice;
+  readonly limits: StalenessLimits;
+  readonly crews: ReadonlyMap<string, CrewMark>;
+  readonly alarms: ReadonlyMap<string, FrameAlarm>;
+  readonly selected: string | null;
+  readonly trails: Trails;
+  /** Length of the trails shown (s); 0 hides them. */
+  readonly trail_s: number;
+}
+
+export interface Layer {
+  draw(context: CanvasRenderingContext2D, scene: Scene): void;
+}
+
+/** A node where it is drawn (CSS pixels). */
+export interface Placed {
+  readonly node: FrameNode;
+  readonly x: number;
+  readonly y: number;
+  /** It is on a storey that is not the chosen one. */
+  readonly elsewhere: boolean;
+}

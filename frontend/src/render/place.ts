@@ -1,0 +1,57 @@
+/** Where nodes are drawn, and which one a finger means. */
+import { levelOf } from "../domain/levels";
+import { isMoving } from "../domain/staleness";
+import { toScreen } from "../domain/view";
+import type { Placed, Scene } from "./layer";
+
+/** Nodes this far outside the map are not drawn (CSS pixels). */
+const BEYOND = 60;
+/** A finger in a glove: half of a 44 px target. */
+const REACH = 22;
+
+const placedOf = new WeakMap<Scene, readonly Placed[]>();
+
+/** All nodes with a position near the map, worked out once for a scene. */
+export function placed(scene: Scene): readonly Placed[] {
+  const known = placedOf.get(scene);
+  if (known !== undefined) return known;
+  const { view, level, levels, picture } = scene;
+  const all: Placed[] = [];
+  for (const { state: node } of picture?.nodes.values() ?? []) {
+    if (node.position_m == null) continue;
+    const [x, y] = toScreen(view, node.position_m[0], node.position_m[1]);
+    if (x < -BEYOND || y < -BEYOND || x > view.width + BEYOND || y > view.height + BEYOND) continue;
+    const on = level === "all" ? level : levelOf(node, levels);
+    // What flies outside belongs to every storey.
+    all.push({ node, x, y, elsewhere: node.role !== "uav" && on !== null && on !== level });
+  }
+  placedOf.set(scene, all);
+  return all;
+}
+
+/** Responders and UAVs, those in alarm and the selected one last, so that they lie on top. */
+export function movers(scene: Scene): Placed[] {
+  const rank = ({ node }: Placed) => (node.node === scene.selected ? 2 : scene.alarms.has(node.node) ? 1 : 0);
+  return placed(scene)
+    .filter(({ node }) => isMoving(node.role))
+    .sort((a, b) => rank(a) - rank(b));
+}
+
+/** Nodes that stand. */
+export function radios(scene: Scene): Placed[] {
+  return placed(scene).filter(({ node }) => !isMoving(node.role));
+}
+
+/** The node under a finger; responders before radios, the nearest first. */
+export function hit(scene: Scene, x: number, y: number): string | null {
+  let best: { node: string; distance: number } | null = null;
+  for (const place of placed(scene)) {
+    if (place.elsewhere) continue;
+    const reach = isMoving(place.node.role) ? REACH : REACH * 0.7;
+    const distance = Math.hypot(place.x - x, place.y - y) + (isMoving(place.node.role) ? 0 : REACH / 2);
+    if (distance <= reach && (best === null || distance < best.distance)) {
+      best = { node: place.node.node, distance };
+    }
+  }
+  return best?.node ?? null;
+}

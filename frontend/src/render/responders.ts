@@ -1,0 +1,85 @@
+/** Responders and UAVs: shape and dash tell live, stale and lost; colour tells the crew; red tells alarm. */
+import { markOf } from "../domain/crews";
+import { statusAt } from "../domain/staleness";
+import type { Status } from "../domain/types";
+import { DASHES } from "./ellipses";
+import type { Layer, Placed, Scene } from "./layer";
+import { movers } from "./place";
+
+export const RADIUS = 13;
+const TICK = 11;
+
+export const responders: Layer = {
+  draw(context, scene) {
+    context.save();
+    for (const place of movers(scene)) draw(context, scene, place);
+    context.restore();
+  },
+};
+
+function draw(context: CanvasRenderingContext2D, scene: Scene, { node, x, y, elsewhere }: Placed): void {
+  const status = statusAt(node, scene.now, scene.limits);
+  const mark = markOf(node, scene.crews);
+  const alarm = scene.alarms.has(node.node);
+  context.globalAlpha = elsewhere ? 0.3 : status === "retired" ? 0.4 : 1;
+  if (node.node === scene.selected) {
+    context.strokeStyle = scene.palette.ink;
+    context.lineWidth = 3;
+    circle(context, x, y, RADIUS + 8);
+    context.stroke();
+  }
+  if (alarm) {
+    context.fillStyle = scene.palette.alarm;
+    circle(context, x, y, RADIUS + 6);
+    context.fill();
+  }
+  if (node.heading_rad != null && status === "live" && node.role !== "uav") {
+    context.strokeStyle = mark.colour;
+    context.lineWidth = 4;
+    context.beginPath();
+    const [east, north] = [Math.cos(node.heading_rad), Math.sin(node.heading_rad)];
+    context.moveTo(x + RADIUS * east, y - RADIUS * north);
+    context.lineTo(x + (RADIUS + TICK) * east, y - (RADIUS + TICK) * north);
+    context.stroke();
+  }
+  outline(context, node.role === "uav" ? "uav" : status, x, y);
+  context.fillStyle = status === "lost" || status === "retired" ? scene.palette.ground : mark.colour;
+  context.fill();
+  context.strokeStyle = status === "live" ? scene.palette.ground : mark.colour;
+  context.lineWidth = status === "live" ? 1.5 : 3;
+  context.setLineDash(DASHES[status].length > 0 ? [5, 3] : []);
+  context.stroke();
+  context.setLineDash([]);
+  context.fillStyle = status === "lost" || status === "retired" ? scene.palette.ink : mark.ink;
+  context.font = "700 11px system-ui, sans-serif";
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  context.fillText(status === "lost" ? "?" : mark.letters, x, y + 0.5);
+}
+
+/** Live is round, stale a diamond, lost a square; a UAV is a triangle that points up. */
+function outline(context: CanvasRenderingContext2D, shape: Status | "uav", x: number, y: number): void {
+  context.beginPath();
+  if (shape === "uav") {
+    context.moveTo(x, y - RADIUS - 4);
+    context.lineTo(x + RADIUS + 4, y + RADIUS - 2);
+    context.lineTo(x - RADIUS - 4, y + RADIUS - 2);
+    context.closePath();
+  } else if (shape === "stale") {
+    const r = RADIUS + 3;
+    context.moveTo(x, y - r);
+    context.lineTo(x + r, y);
+    context.lineTo(x, y + r);
+    context.lineTo(x - r, y);
+    context.closePath();
+  } else if (shape === "lost") {
+    context.rect(x - RADIUS + 1, y - RADIUS + 1, 2 * RADIUS - 2, 2 * RADIUS - 2);
+  } else {
+    context.arc(x, y, RADIUS, 0, 2 * Math.PI);
+  }
+}
+
+function circle(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+}

@@ -1,0 +1,102 @@
+/** Requests to the server, with their answers as values. */
+import createClient from "openapi-fetch";
+import type { FrameAlarm, Incident, Track } from "../domain/types";
+import type { components, paths } from "./schema";
+
+const client = createClient<paths>({ baseUrl: window.location.origin });
+
+/** What kept a request from being done: `status` is the HTTP status, 0 where no answer came. */
+export class RequestFailed extends Error {
+  constructor(
+    readonly status: number,
+    message: string,
+  ) {
+    super(message);
+  }
+}
+
+type Problem = components["schemas"]["Problem"];
+
+/** Who speaks in batches sent from this screen. */
+const GATEWAY = "command-post";
+
+async function answered<T>(
+  request: Promise<{ data?: T; error?: Problem | undefined; response: Response }>,
+): Promise<T> {
+  let answer: Awaited<typeof request>;
+  try {
+    answer = await request;
+  } catch (cause) {
+    throw new RequestFailed(
+      0,
+      `The server cannot be reached (${cause instanceof Error ? cause.message : cause}).`,
+    );
+  }
+  if (!answer.response.ok) {
+    const problem = answer.error;
+    const said = problem?.detail || problem?.title || answer.response.statusText;
+    throw new RequestFailed(answer.response.status, said || `The server answered ${answer.response.status}.`);
+  }
+  return answer.data as T;
+}
+
+/** All incidents, the newest first, active ones before closed ones. */
+export async function incidents(): Promise<Incident[]> {
+  const list = await answered(client.GET("/api/v1/incidents"));
+  return list.sort(
+    (a, b) => Number(a.state === "closed") - Number(b.state === "closed") || b.created - a.created,
+  );
+}
+
+export async function incident(id: string): Promise<Incident> {
+  return answered(client.GET("/api/v1/incidents/{incident}", { params: { path: { incident: id } } }));
+}
+
+/** The estimate as it stood, a point every `step` seconds between `from` and `to` (Unix s). */
+export async function tracks(
+  id: string,
+  query: { from?: number; to?: number; step?: number },
+): Promise<Track[]> {
+  const params = { path: { incident: id }, query: { ...query, view: "live" as const } };
+  // openapi-fetch widens the tuples of the schema to arrays.
+  return (await answered(client.GET("/api/v1/incidents/{incident}/tracks", { params }))).tracks as Track[];
+}
+
+/**
+ * Puts the commander's word on an alarm into the log, one reading for each state.
+ * `batch` makes it safe to send again.
+ */
+export async function postAlarm(
+  id: string,
+  batch: string,
+  t: number,
+  alarm: FrameAlarm,
+  states: readonly FrameAlarm["state"][],
+): Promise<void> {
+  const readings = states.map((state) => ({
+    kind: "alarm" as const,
+    t,
+    node: alarm.node,
+    alarm: alarm.alarm,
+    state,
+  }));
+  const answer = await answered(
+    client.POST("/api/v1/incidents/{incident}/telemetry", {
+      params: { path: { incident: id } },
+      body: { gateway: GATEWAY, batch, readings },
+    }),
+  );
+  const refused = answer.rejected[0];
+  if (refused) throw new RequestFailed(422, refused.message);
+}
+
+/** Trades an access token for a session cookie. */
+export async function signIn(token: string): Promise<void> {
+  await answered(client.POST("/api/v1/session", { body: { token } }));
+}
+
+/** A batch id that no other screen will choose. `crypto.randomUUID` exists only on secure origins. */
+export function freshBatch(): string {
+  const bytes = crypto.getRandomValues(new Uint8Array(16));
+  return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+}

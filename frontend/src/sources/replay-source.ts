@@ -1,0 +1,51 @@
+import type { LiveMessage } from "../domain/types";
+import { ReconnectingSource, socketAddress } from "./reconnecting";
+
+export interface ReplayFrom {
+  /** First moment that can be sought (Unix s). */
+  readonly begin: number;
+  /** Where to begin (Unix s). */
+  readonly at: number;
+  readonly to: number;
+  readonly speed: number;
+  readonly paused: boolean;
+}
+
+/** The incident as it was, played from its log; it can be sought, paused and sped up. */
+export class ReplaySource extends ReconnectingSource {
+  private readonly at: { t: number; speed: number; paused: boolean };
+
+  constructor(incident: string, { begin, at, to, speed, paused }: ReplayFrom) {
+    super(() => {
+      const query = new URLSearchParams({ from: String(begin), to: String(to) });
+      return socketAddress(`/api/v1/incidents/${encodeURIComponent(incident)}/replay?${query}`);
+    });
+    this.at = { t: at, speed, paused };
+  }
+
+  seek(t: number): void {
+    this.at.t = t;
+    this.send({ seek: t });
+  }
+
+  setSpeed(speed: number): void {
+    this.at.speed = speed;
+    this.send({ speed });
+  }
+
+  setPaused(paused: boolean): void {
+    this.at.paused = paused;
+    this.send({ pause: paused });
+  }
+
+  /** Also after a break the replay goes on where it was. */
+  protected override opened(): void {
+    this.send({ speed: this.at.speed });
+    this.send({ pause: this.at.paused });
+    this.send({ seek: this.at.t });
+  }
+
+  protected override heard(message: LiveMessage): void {
+    if (message.type === "delta") this.at.t = message.clock_t;
+  }
+}
