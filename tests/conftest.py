@@ -1,0 +1,54 @@
+"""Fixtures that tests of several packages share."""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from uuid import uuid4
+
+import hypothesis
+import pytest
+import sqlalchemy as sa
+
+from tests.needs import missing
+
+# The gate tries the same examples each time: it speaks of the change, not of luck. At a desk they vary.
+hypothesis.settings.register_profile("gate", derandomize=True, deadline=None)
+hypothesis.settings.register_profile("desk", deadline=None)
+hypothesis.settings.load_profile("gate" if os.environ.get("CI") else "desk")
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """The folder of public recordings, beside the checkout unless FIRETHREAD_SHARED_DATA says where."""
+    folder = Path(os.environ.get("FIRETHREAD_SHARED_DATA", ROOT.parent / "shared" / "data"))
+    if not folder.is_dir():
+        missing(f"the data folder {folder}", "put it there or set FIRETHREAD_SHARED_DATA")
+    return folder
+
+
+@pytest.fixture
+def postgres_url() -> Iterator[str]:
+    """The URL of an empty Postgres database, dropped afterwards."""
+    server = os.environ.get("FIRETHREAD_TEST_POSTGRES", "postgresql+psycopg://127.0.0.1:5432/postgres")
+    admin = sa.create_engine(server, isolation_level="AUTOCOMMIT")
+    name = f"firethread_test_{uuid4().hex[:12]}"
+    try:
+        with admin.connect() as connection:
+            connection.execute(sa.text(f"CREATE DATABASE {name}"))
+    except sa.exc.OperationalError as error:
+        missing(f"Postgres at {server}", f"start it or set FIRETHREAD_TEST_POSTGRES ({error})")
+    yield sa.engine.make_url(server).set(database=name).render_as_string(hide_password=False)
+    with admin.connect() as connection:
+        connection.execute(sa.text(f"DROP DATABASE {name} WITH (FORCE)"))
+    admin.dispose()
+
+
+@pytest.fixture(params=["sqlite", "postgres"])
+def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """The URL of an empty database, once SQLite and once Postgres."""
+    if request.param == "sqlite":
+        return f"sqlite:///{tmp_path / 'firethread.db'}"
+    url: str = request.getfixturevalue("postgres_url")
+    return url

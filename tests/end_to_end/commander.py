@@ -1,0 +1,293 @@
+"""The commander before the screen: the only file that knows the browser driver and the page's structure."""
+
+import re
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import quote
+
+from playwright.sync_api import Locator, Page
+
+from tests.running import eventually
+
+# Crews take these colours in the order of their names.
+FIRST_CREW = "#56b4e9"
+SECOND_CREW = "#e69f00"
+THIRD_CREW = "#009e73"
+
+_PIXELS = """(canvas, {colour, tolerance}) => {
+  const wanted = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+  const {width, height} = canvas;
+  const ratio = width / canvas.clientWidth;
+  const {data} = canvas.getContext('2d').getImageData(0, 0, width, height);
+  let count = 0, x = 0, y = 0, left = width, right = 0, top = height, bottom = 0;
+  for (let at = 0; at < data.length; at += 4) {
+    if (wanted.some((value, part) => Math.abs(data[at + part] - value) > tolerance)) continue;
+    const column = (at / 4) % width, row = Math.floor(at / 4 / width);
+    count += 1; x += column; y += row;
+    left = Math.min(left, column); right = Math.max(right, column);
+    top = Math.min(top, row); bottom = Math.max(bottom, row);
+  }
+  if (count === 0) return {count, x: 0, y: 0, left: 0, right: 0, top: 0, bottom: 0};
+  return {count: count / ratio ** 2, x: x / count / ratio, y: y / count / ratio,
+          left: left / ratio, right: right / ratio, top: top / ratio, bottom: bottom / ratio};
+}"""
+
+_WIDTH_BETWEEN = """(canvas, {colour, top, bottom}) => {
+  const wanted = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+  const ratio = canvas.width / canvas.clientWidth;
+  const [first, last] = [Math.round(top * ratio), Math.round(bottom * ratio)];
+  const {data} = canvas.getContext('2d').getImageData(0, first, canvas.width, last - first + 1);
+  let left = canvas.width, right = 0;
+  for (let at = 0; at < data.length; at += 4) {
+    if (wanted.some((value, part) => data[at + part] !== value)) continue;
+    const column = (at / 4) % canvas.width;
+    left = Math.min(left, column); right = Math.max(right, column);
+  }
+  return Math.max(0, right - left) / ratio;
+}"""
+
+
+@dataclass(frozen=True)
+class BoardRow:
+    """One line of the accountability board."""
+
+    status: str
+    age_s: float
+    level: str
+    error: str
+
+
+@dataclass(frozen=True)
+class Pixels:
+    """Where on the map a colour lies (CSS pixels, y downwards): centroid and extent."""
+
+    count: float
+    x: float
+    y: float
+    left: float
+    right: float
+    top: float
+    bottom: float
+
+    @property
+    def width(self) -> float:
+        """From its leftmost to its rightmost pixel."""
+        return self.right - self.left
+
+    @property
+    def height(self) -> float:
+        """From its topmost to its lowest pixel."""
+        return self.bottom - self.top
+
+
+class Commander:
+    """What a commander sees and does.
+
+    Args:
+        page: a fresh page of the browser.
+    """
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+        self.requested: list[str] = []
+        self.faults: list[str] = []
+        page.on("request", lambda request: self.requested.append(request.url))
+        page.on("websocket", lambda socket: self.requested.append(socket.url))
+        page.on("pageerror", lambda error: self.faults.append(str(error)))
+
+    def opens(self, url: str, incident: str) -> float:
+        """Open the screen on an incident; seconds until the first responder was on the board."""
+        began = time.monotonic()
+        self.page.goto(f"{url}/#incident={quote(incident)}")
+        self.page.get_by_test_id("responder").first.wait_for()
+        return time.monotonic() - began
+
+    def board(self) -> dict[str, BoardRow]:
+        """The accountability board: callsign to status word, age, level and error."""
+        rows: dict[str, list[str]] = self.page.evaluate(
+            """() => Object.fromEntries([...document.querySelectorAll('[data-testid=responder]')].map(row => {
+              const of = (id) => row.querySelector(`[data-testid=${id}]`)?.textContent.trim() ?? '';
+              return [row.querySelector('.name').textContent.trim(),
+                      [of('status'), of('age'), of('level'), of('error')]];
+            }))"""
+        )
+        return {
+            name: BoardRow(status, _seconds(age), level, error)
+            for name, (status, age, level, error) in rows.items()
+        }
+
+    def cut_off(self) -> list[str]:
+        """The texts on the board that do not fit where they stand."""
+        found: list[str] = self.page.evaluate(
+            """() => [...document.querySelectorAll('[data-testid=responder]')].flatMap((row) =>
+              [...row.querySelectorAll('span')].filter((part) => !part.closest('.unseen') && (
+                part.scrollWidth > part.clientWidth + 1 && getComputedStyle(part).overflowX !== 'visible'
+                || part.getBoundingClientRect().right > row.getBoundingClientRect().right + 1
+                || part.matches('.name') && part.nextElementSibling.getBoundingClientRect().left
+                   < part.getBoundingClientRect().left + part.scrollWidth - 1)
+              ).map((part) => part.textContent.trim()))"""
+        )
+        return found
+
+    def sees(self, name: str, status: str, within_s: float = 15.0) -> None:
+        """Wait until the board gives a responder that status."""
+        eventually(lambda: name in (rows := self.board()) and rows[name].status == status, within_s)
+
+    def selects(self, node: str) -> None:
+        """Press a responder's line on the board."""
+        self.page.locator(f'[data-testid=responder][data-node="{node}"]').click()
+
+    @property
+    def selected(self) -> str | None:
+        """The node whose line is pressed."""
+        line = self.page.locator('[data-testid=responder][aria-pressed="true"]')
+        return line.get_attribute("data-node") if line.count() else None
+
+    @property
+    def card(self) -> str:
+        """The text of the selected responder's card, nothing if there is none."""
+        card = self.page.get_by_test_id("card")
+        return card.inner_text() if card.count() else ""
+
+    def chooses_storey(self, name: str) -> None:
+        """Press a storey's button."""
+        self.page.get_by_test_id("storeys").get_by_role(
+            "button", name=re.compile(f"^{re.escape(name)}")
+        ).click()
+
+    @property
+    def storey(self) -> str:
+        """The name on the storey button that is pressed."""
+        return self.page.get_by_test_id("storeys").locator('[aria-pressed="true"] .name').inner_text()
+
+    @property
+    def counts(self) -> str:
+        """How many are inside, live, stale, lost, as the top bar says it."""
+        return " ".join(self.page.get_by_test_id("counts").inner_text().split())
+
+    @property
+    def banners(self) -> list[str]:
+        """The texts of the alarm banners."""
+        return [" ".join(text.split()) for text in self.page.get_by_test_id("alarm").all_inner_texts()]
+
+    def acknowledges(self) -> None:
+        """Acknowledge the first alarm."""
+        self._alarm_button("Acknowledge").click()
+
+    def clears(self) -> None:
+        """Clear the first alarm."""
+        self._alarm_button("Clear").click()
+
+    def _alarm_button(self, name: str) -> Locator:
+        return self.page.get_by_test_id("alarm").first.get_by_role("button", name=name, exact=True)
+
+    @property
+    def connection_lost(self) -> bool:
+        """Whether the sign of the lost connection lies over the map."""
+        return self.page.get_by_test_id("connection-lost").is_visible()
+
+    @property
+    def mode(self) -> str:
+        """LIVE or REPLAY."""
+        return self.page.get_by_test_id("clock").locator(".mode").inner_text()
+
+    @property
+    def clock(self) -> str:
+        """The time that the picture stands for, as the top bar says it."""
+        return self.page.get_by_test_id("clock").locator("time").inner_text()
+
+    def scrubs_to(self, t: float) -> None:
+        """Drag the timeline's handle to a moment (Unix s)."""
+        self.page.get_by_test_id("timeline").get_by_role("slider").evaluate(
+            """(slider, t) => {
+              slider.valueAsNumber = t;
+              slider.dispatchEvent(new Event('input', {bubbles: true}));
+            }""",
+            t,
+        )
+
+    def plays(self) -> None:
+        """Press play, or pause."""
+        self.page.get_by_test_id("play").click()
+
+    def goes_back_to_live(self) -> None:
+        """Press the button back to live."""
+        self.page.get_by_test_id("back-to-live").click()
+
+    def presses(self, key: str) -> None:
+        """Press a key."""
+        self.page.keyboard.press(key)
+
+    def turns_trails_off(self) -> None:
+        """Choose no trails."""
+        self.page.get_by_label("Trail").select_option("0")
+
+    @property
+    def theme(self) -> str:
+        """Day, dusk or night."""
+        return str(self.page.evaluate("document.documentElement.dataset.theme"))
+
+    def switches_theme(self) -> None:
+        """Press the theme button."""
+        self.page.get_by_role("button", name=re.compile("^Theme:")).click()
+
+    def asks_for_help(self) -> None:
+        """Open the help sheet."""
+        self.page.get_by_role("button", name="Help and keys").click()
+
+    def holds_the_map(self) -> None:
+        """Zoom out a step: from then on the map stays where it is."""
+        self.presses("-")
+
+    def colour(self, colour: str, tolerance: int = 0) -> Pixels:
+        """The pixels of the map within `tolerance` of a colour in each channel: a mark's are exact."""
+        found = self.page.get_by_test_id("map").evaluate(_PIXELS, {"colour": colour, "tolerance": tolerance})
+        return Pixels(**{name: float(value) for name, value in found.items()})
+
+    def shape(self, colour: str) -> str:
+        """The outline of a crew's one mark: round, diamond or square; "none" where there is no mark."""
+        mark = self.colour(colour)
+        if not mark.count:
+            return "none"
+        across = self.page.get_by_test_id("map").evaluate(
+            _WIDTH_BETWEEN, {"colour": colour, "top": mark.top + 1, "bottom": mark.top + 0.25 * mark.height}
+        )
+        share = float(across) / mark.height
+        # At a quarter of their height a circle is 0.87 as wide, a diamond 0.5, a square 1.
+        return "diamond" if share < 0.68 else "round" if share < 0.93 else "square"
+
+    def settled_mark(self, colour: str) -> Pixels:
+        """A crew's mark once two looks, some frames apart, find it in the same place."""
+        seen: list[Pixels] = []
+
+        def still() -> Pixels | None:
+            seen.append(self.colour(colour))
+            if len(seen) < 2 or not seen[-1].count:
+                return None
+            before, now = seen[-2:]
+            return now if abs(now.x - before.x) < 0.5 and abs(now.y - before.y) < 0.5 else None
+
+        found = eventually(still, every_s=0.3)
+        assert isinstance(found, Pixels)
+        return found
+
+    def has_webgl(self) -> bool:
+        """Whether this browser can draw with WebGL at all."""
+        return bool(self.page.evaluate("document.createElement('canvas').getContext('webgl') !== null"))
+
+    def faults_of_access(self, axe: Path) -> list[str]:
+        """What axe finds wrong on the page as it stands: rule and the first element of each."""
+        if not self.page.evaluate("'axe' in window"):
+            self.page.evaluate(axe.read_text())
+        found: list[str] = self.page.evaluate(
+            """async () => (await axe.run()).violations.map(({id, help, nodes}) =>
+              `${id}: ${help}: ${nodes.map(({target}) => target.join(' ')).join(', ')}`)"""
+        )
+        return found
+
+
+def _seconds(words: str) -> float:
+    """Seconds of "12 s", "3 min 05 s", "2 h 04 min"."""
+    units = {"s": 1, "min": 60, "h": 3600}
+    return float(sum(int(count) * units[unit] for count, unit in re.findall(r"(\d+) (s|min|h)\b", words)))

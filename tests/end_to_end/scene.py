@@ -1,0 +1,61 @@
+"""Readings of a small incident: a base at the entry and crews around it."""
+
+import itertools
+from collections.abc import Sequence
+from typing import TypeAlias
+
+from tests.running import Post, eventually
+
+Reading: TypeAlias = dict[str, object]
+
+_batches = itertools.count()
+
+
+def base(t: float) -> Reading:
+    """The base station at the entry, the origin of the map."""
+    return {"kind": "node", "t": t, "node": "base", "role": "base", "position_m": [0.0, 0.0, 0.0]}
+
+
+def responder(t: float, node: str, crew: str, at_m: Sequence[float], sigma_m: float = 0.5) -> Reading:
+    """A responder who stands at a known place (east, north, up); its callsign is its name in capitals."""
+    return {
+        "kind": "node",
+        "t": t,
+        "node": node,
+        "role": "responder",
+        "callsign": node.upper(),
+        "crew": crew,
+        "position_m": [float(value) for value in at_m],
+        "sigma_m": sigma_m,
+        "heading_rad": 0.0,
+        "heading_sigma_rad": 0.01,
+    }
+
+
+def step(t: float, node: str, delta_m: Sequence[float]) -> Reading:
+    """A displacement that the responder's unit has measured."""
+    return {"kind": "displacement", "t": t, "node": node, "delta_m": [float(value) for value in delta_m]}
+
+
+def alarm(t: float, node: str, kind: str = "mayday", state: str = "raised") -> Reading:
+    """An alarm of a responder."""
+    return {"kind": "alarm", "t": t, "node": node, "alarm": kind, "state": state}
+
+
+def heard(post: Post, incident: str, *readings: Reading) -> None:
+    """Post readings and wait until the estimator has folded them."""
+    answer = post.telemetry(incident, f"batch-{next(_batches)}", readings)
+    assert answer["rejected"] == []
+    seq = answer["seq"]
+    assert isinstance(seq, int)
+    post.frame(incident, min_seq=seq)
+
+
+def recorded(post: Post, incident: str, t: float) -> None:
+    """Wait until the picture of a second of incident time is recorded, so that it can be replayed."""
+
+    def last_t() -> float | None:
+        answer = post.http.get(f"/incidents/{incident}").json()["last_t"]
+        return None if answer is None else float(answer)
+
+    eventually(lambda: (newest := last_t()) is not None and newest >= t)

@@ -1,0 +1,85 @@
+"""A replay shows what was shown."""
+
+import pytest
+
+from tests.end_to_end.commander import FIRST_CREW, SECOND_CREW, BoardRow, Commander, Pixels
+from tests.end_to_end.scene import alarm, base, heard, recorded, responder, step
+from tests.running import Post, Server, eventually
+
+T0 = 1_763_712_345.0
+
+
+def shown(commander: Commander) -> tuple[dict[str, BoardRow], list[Pixels]]:
+    """What a commander takes from the screen: the words of the board, the marks on the map."""
+    marks = [commander.settled_mark(colour) for colour in (FIRST_CREW, SECOND_CREW)]
+    return commander.board(), marks
+
+
+def alike(before: list[Pixels], after: list[Pixels]) -> bool:
+    """Whether marks lie in the same places, to half a pixel."""
+    return all(
+        (one.x, one.y) == pytest.approx((other.x, other.y), abs=0.5)
+        for one, other in zip(before, after, strict=True)
+    )
+
+
+def test_a_replay_shows_what_live_showed(server: Server, post: Post, commander: Commander) -> None:
+    incident = post.open_incident()
+    heard(
+        post,
+        incident,
+        base(T0),
+        responder(T0, "walker", "A", [-5, 2, 0]),
+        responder(T0, "quiet", "B", [-5, -3, 0]),
+    )
+    commander.opens(server.url, incident)
+    commander.turns_trails_off()
+    commander.holds_the_map()
+    for second in range(1, 6):
+        heard(post, incident, step(T0 + second, "walker", [0.8, 0.4, 0]))
+    eventually(lambda: commander.board()["QUIET"].age_s == 5)
+    board, marks = shown(commander)
+    assert board["QUIET"].status == "Live"
+    assert commander.mode == "LIVE"
+    noted = commander.clock
+
+    for second in range(6, 21):
+        heard(post, incident, step(T0 + second, "walker", [0.3, -0.4, 0]))
+    eventually(lambda: commander.board()["QUIET"].age_s == 20)
+    assert commander.board()["QUIET"].status == "Stale"
+    newest = shown(commander)
+    assert not alike(newest[1], marks)
+    recorded(post, incident, T0 + 20)
+
+    commander.scrubs_to(T0 + 5)
+    eventually(lambda: commander.mode == "REPLAY")
+    eventually(lambda: commander.clock == noted)
+    eventually(lambda: commander.board() == board)
+    eventually(lambda: alike(shown(commander)[1], marks))
+
+    commander.plays()
+    eventually(lambda: commander.clock > noted, within_s=5)
+    eventually(lambda: commander.settled_mark(FIRST_CREW).x > marks[0].x + 3)
+
+    commander.goes_back_to_live()
+    eventually(lambda: commander.mode == "LIVE")
+    eventually(lambda: shown(commander)[0] == newest[0])
+    assert alike(shown(commander)[1], newest[1])
+
+
+def test_a_mayday_stands_before_a_commander_who_watches_the_past(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
+    heard(post, incident, step(T0 + 9, "walker", [1, 0, 0]))
+    recorded(post, incident, T0 + 9)
+    commander.opens(server.url, incident)
+    commander.scrubs_to(T0 + 4)
+    eventually(lambda: commander.mode == "REPLAY")
+    assert commander.banners == []
+
+    heard(post, incident, alarm(T0 + 10, "walker"))
+    eventually(lambda: commander.banners, within_s=3)
+    assert "MAYDAY WALKER" in commander.banners[0]
+    assert commander.mode == "REPLAY"

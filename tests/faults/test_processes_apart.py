@@ -1,0 +1,94 @@
+"""Web process and worker as two commands on Postgres, as docker-compose.yml runs them."""
+
+import contextlib
+import os
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.running import Post, Server, eventually
+
+SHARED_WORD = "a-word-that-both-share"
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+@contextlib.contextmanager
+def worker(database: str, link: str) -> Iterator[subprocess.Popen[bytes]]:
+    """A worker by itself."""
+    command = [sys.executable, "-m", "backend.cli", "worker", "--database", database, "--link", link]
+    process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    try:
+        yield process
+    finally:
+        process.terminate()
+        process.wait(20)
+
+
+@pytest.fixture
+def apart(
+    tmp_path: Path, postgres_url: str, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[tuple[Server, str, str]]:
+    """A web process without a worker, the address of its link, and the database."""
+    monkeypatch.setitem(os.environ, "FIRETHREAD_LINK_TOKEN", SHARED_WORD)
+    link = f"127.0.0.1:{free_port()}"
+    server = Server(tmp_path / "data", ["--no-worker", "--database", postgres_url, "--link", link])
+    yield server.start(), link, postgres_url
+    server.stop()
+
+
+def walk(post: Post, incident: str, second: int) -> int:
+    """A responder makes a step; the log entry in which it stands."""
+    step = {"kind": "displacement", "t": 1000.0 + second, "node": "ff1", "delta_m": [1.0, 0.0, 0.0]}
+    return int(str(post.telemetry(incident, f"step-{second}", [step])["seq"]))
+
+
+def test_a_worker_that_comes_later_finds_the_log_and_one_that_is_replaced_is_not_missed(
+    apart: tuple[Server, str, str],
+) -> None:
+    server, link, database = apart
+    post = Post(server.url)
+    incident = post.open_incident()
+    base = {"kind": "node", "t": 1000.0, "node": "base", "role": "base", "position_m": [0, 0, 0]}
+    post.telemetry(incident, "base", [base])
+    for second in range(5):
+        newest = walk(post, incident, second)
+    assert post.http.get("/incidents").status_code == 200
+    assert post.frame(incident)["seq"] == 0, "somebody estimated without a worker"
+
+    with worker(database, link):
+        assert post.frame(incident, min_seq=newest, timeout_s=30)["seq"] == newest
+    # Nobody estimates now; telemetry is taken all the same.
+    newest = walk(post, incident, 5)
+    eventually(lambda: not readiness(server)["worker"])
+    with worker(database, link):
+        frame = post.frame(incident, min_seq=newest, timeout_s=30)
+    nodes = frame["nodes"]
+    assert isinstance(nodes, list)
+    walker = next(node for node in nodes if node["node"] == "ff1")
+    assert walker["position_m"][0] == pytest.approx(6.0, abs=1.0)
+
+
+def test_a_worker_without_the_shared_word_is_turned_away(
+    apart: tuple[Server, str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    server, link, database = apart
+    monkeypatch.setitem(os.environ, "FIRETHREAD_LINK_TOKEN", "another-word")
+    with worker(database, link) as process:
+        assert process.poll() is None
+        with pytest.raises(AssertionError):
+            eventually(lambda: readiness(server)["worker"], within_s=3.0)
+
+
+def readiness(server: Server) -> dict[str, bool]:
+    """What `/readyz` says."""
+    with Post(server.url).http as http:
+        return dict(http.get(server.url + "/readyz").json())
