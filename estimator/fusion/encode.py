@@ -3,8 +3,10 @@
 import msgspec
 import numpy as np
 
-from estimator.fusion.nodes import Clone, NodeState, Sighting
+from estimator.fusion.ledger import COLUMNS
+from estimator.fusion.nodes import NodeState
 from estimator.fusion.noise import LearnedNoise, Link
+from estimator.fusion.prior import Key, Prior
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
@@ -14,6 +16,13 @@ from estimator.measurements import AnyReading
 ArrayRecord = tuple[list[int], bytes]
 
 
+class PriorRecord(msgspec.Struct, frozen=True, array_like=True):
+    """`Prior` in plain values."""
+
+    keys: list[Key]
+    arrays: tuple[ArrayRecord, ArrayRecord, ArrayRecord]
+
+
 class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     """`FusionState` in plain values."""
 
@@ -21,8 +30,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     variables: list[Variable]
     arrays: tuple[ArrayRecord, ArrayRecord, ArrayRecord]
     nodes: list[NodeState]
-    sightings: dict[str, tuple[Sighting, ...]]
-    clones: dict[str, tuple[Clone, ...]]
+    sightings: dict[str, int]
     waiting: tuple[AnyReading, ...]
     noise: dict[str, LearnedNoise]
     links: dict[str, Link]
@@ -30,19 +38,29 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     counts: dict[str, int]
     said: list[str]
     tried: dict[str, int]
-    clone_step: dict[str, float]
+    tables: dict[str, ArrayRecord]
+    owners: tuple[str, ...]
+    sources: tuple[str, ...]
+    newest_t: float
+    due: bool
+    begun_t: float | None
+    refreshed_t: float
+    window_t: float | None
+    prior: PriorRecord | None
+    uncalibrated: dict[str, float]
+    bent_m: float
 
 
 def record_of(state: FusionState) -> FusionRecord:
     """The state's record; it shares nothing that changes."""
     matrix, vector, reference = state.graph.storage()
+    prior = state.prior
     return FusionRecord(
         state.origin_wgs84,
         list(state.graph.starts),
         (_record(matrix), _record(vector), _record(reference)),
         list(state.nodes.values()),
         dict(state.sightings),
-        dict(state.clones),
         state.waiting,
         dict(state.noise),
         dict(state.links),
@@ -50,7 +68,21 @@ def record_of(state: FusionState) -> FusionRecord:
         dict(state.counts),
         list(state.said),
         dict(state.tried),
-        dict(state.clone_step),
+        {name: _record(state.ledger.table(name)) for name in COLUMNS},
+        state.owners,
+        state.sources,
+        state.newest_t,
+        state.due,
+        state.begun_t,
+        state.refreshed_t,
+        state.window_t,
+        None
+        if prior is None
+        else PriorRecord(
+            list(prior.keys), (_record(prior.matrix), _record(prior.vector), _record(prior.reference))
+        ),
+        dict(state.uncalibrated),
+        state.bent_m,
     )
 
 
@@ -60,10 +92,17 @@ def state_of(record: FusionRecord) -> FusionState:
     matrix, vector, reference = (_array(r) for r in record.arrays)
     state.graph = Kirchhoff.of(record.variables, matrix, vector, reference)
     state.nodes = {n.node: n for n in record.nodes}
-    state.sightings, state.clones, state.waiting = record.sightings, record.clones, record.waiting
+    state.sightings, state.waiting = record.sightings, record.waiting
     state.noise, state.reference_pa, state.counts = record.noise, record.reference_pa, record.counts
     state.said, state.tried = dict.fromkeys(record.said), record.tried
-    state.clone_step, state.links = record.clone_step, record.links
+    state.links, state.owners, state.sources = record.links, record.owners, record.sources
+    for name in COLUMNS:
+        state.ledger.replace(name, _array(record.tables[name]))
+    state.newest_t, state.due, state.begun_t = record.newest_t, record.due, record.begun_t
+    state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
+    state.uncalibrated, state.bent_m = record.uncalibrated, record.bent_m
+    if record.prior is not None:
+        state.prior = Prior(tuple(record.prior.keys), *(_array(a) for a in record.prior.arrays))
     return state
 
 

@@ -12,6 +12,7 @@ from estimator.fusion.nodes import NodeState
 from estimator.fusion.noise import Link, link_sigma
 from estimator.fusion.rows import End, Linear, Pair
 from estimator.fusion.state import FusionState
+from estimator.graph.robust import Mixture
 from estimator.graph.variable import Variable
 from estimator.measurements.altitude import Altitude, Pressure, height_above
 from estimator.measurements.bearing import Bearing
@@ -44,6 +45,8 @@ def fix(state: FusionState, reading: Position) -> list[Linear]:
     offset = offset_at(state, node, reading.t)
     floor = physics.SIGMA_FLOOR_M
     state.count("fused")
+    for i in range(3):
+        _enter_single(state, node, reading.t, i, position[i], max(sigma[i], floor), physics.FIX_NOISE)
     return [
         Linear(node.position, i, position[i] - float(offset[i]), max(sigma[i], floor), physics.FIX_NOISE)
         for i in range(3)
@@ -72,8 +75,15 @@ def height(state: FusionState, reading: Altitude | Pressure) -> list[Linear]:
     if isinstance(reading, Pressure):
         state.nodes[node.node] = replace(node, pressure_t=reading.t)
     state.count("fused")
+    _enter_single(state, node, reading.t, 2, up, max(sigma, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE)
     up -= float(offset_at(state, node, reading.t)[2])
     return [Linear(node.position, 2, up, max(sigma, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE)]
+
+
+def _enter_single(
+    state: FusionState, node: NodeState, t: float, axis: int, value: float, sigma: float, noise: Mixture
+) -> None:
+    state.ledger.add("singles", t, node.index, axis, value, sigma, physics.NOISES.index(noise))
 
 
 def _height(state: FusionState, node: NodeState, reading: Altitude | Pressure) -> tuple[float | None, float]:
@@ -124,16 +134,50 @@ def pair(state: FusionState, a: NodeState, b: NodeState, reading: Range | Rssi |
             heading = known
         sigma = max(reading.sigma_rad or physics.BEARING_SIGMA_RAD, physics.HEADING_FLOOR_RAD)
         noise = physics.BEARING_NOISE
+        frame = 3.0 if reading.frame == "body" else 2.0
+        row = (a.index, b.index, reading.bearing_rad, sigma, state.source(""), heading, 1.0, -1.0)
+        state.ledger.add("pairs", reading.t, frame, *row)
         return Pair("bearing", *ends, extra, reading.bearing_rad, sigma, noise, "", sigma, "", heading)
     value, sigma, technology, sent = measured(reading)
     kind: Literal["range", "rssi"] = "range" if isinstance(reading, Range) else "rssi"
     made = pair_of(state, kind, ends, value, sigma, technology)
-    key = f"{made.source} {min(a.node, b.node)} {max(a.node, b.node)}"
-    before, way = state.links.get(key), a.way_m + b.way_m
-    link = Link(reading.t, way) if before is None else before.next(reading.t, way)
-    state.links[key] = link
+    link, name = enter(state, a, b, reading)
     sigma = link_sigma(state.learned(made.source), sigma, link.alike)
-    return made._replace(sigma=sigma, link=key, constant=sent)
+    return made._replace(sigma=sigma, link=name, constant=sent)
+
+
+def enter(state: FusionState, a: NodeState, b: NodeState, reading: Range | Rssi) -> tuple[Link, str]:
+    """Enter a range or RSSI into the ledger, and follow its link."""
+    value, sigma, technology, sent = measured(reading)
+    ranged = isinstance(reading, Range)
+    source = technology if ranged else f"rssi {technology}"
+    key = f"{source} {min(a.node, b.node)} {max(a.node, b.node)}"
+    before, way = state.links.get(key), _way_m(a, reading.t) + _way_m(b, reading.t)
+    number = len(state.links) if before is None else before.number
+    link = Link(reading.t, way, number) if before is None else before.next(reading.t, way)
+    state.links[key] = link
+    row = (
+        0.0 if ranged else 1.0,
+        a.index,
+        b.index,
+        value,
+        sigma,
+        state.source(source),
+        sent,
+        link.alike,
+        number,
+    )
+    state.ledger.add("pairs", reading.t, *row)
+    return link, key
+
+
+def _way_m(node: NodeState, t: float) -> float:
+    """How far a node has walked by `t`, for what its readings have in common.
+
+    Without PDR the way is what the readings themselves tell: were they trusted less where it stands still, it
+    would seem to stand still ever after. So it is thought to walk slowly all the time.
+    """
+    return node.way_m if node.mode != "free" else physics.FREE_WAY_MPS * t
 
 
 def pair_of(
@@ -148,8 +192,11 @@ def pair_of(
     source = technology if kind == "range" else f"rssi {technology}"
     states = technology_states(state, technology) if kind == "range" else path_loss_states(state, technology)
     noise = physics.RANGE_NOISE if kind == "range" else physics.RSSI_NOISE
-    learned = max(sigma * state.learned(source).factor, physics.SIGMA_FLOOR_M)
-    return Pair(kind, *ends, states, value, learned, noise, source, sigma)
+    known = state.learned(source)
+    noise = noise._replace(outliers=known.outliers(noise.outliers))
+    return Pair(
+        kind, *ends, states, value, max(sigma * known.factor, physics.SIGMA_FLOOR_M), noise, source, sigma
+    )
 
 
 def measured(reading: Range | Rssi) -> tuple[float, float, str, float]:

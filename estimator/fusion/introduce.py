@@ -19,7 +19,8 @@ def introduce(state: FusionState, reading: Node) -> None:
     """Take in a `node` reading: a new node, a name for a guessed one, or news of a known one."""
     known = state.nodes.get(reading.node)
     if known is None:
-        node = NodeState(node=reading.node, role=reading.role, named=True, t=reading.t)
+        number = state.number(reading.node)
+        node = NodeState(node=reading.node, role=reading.role, named=True, t=reading.t, index=number)
     elif known.role != reading.role and not _may_become(state, known, reading):
         return
     else:
@@ -81,17 +82,28 @@ def place(
     state.graph.add_node(node.position, position_m, floored)
     state.sightings.pop(node.node, None)
     state.tried.pop(node.node, None)
+    east, north, up = (float(c) for c in position_m)
     if node.role in MOVING_ROLES:
+        uav = float(node.role == "uav")
+        state.ledger.add("begins", t, node.index, 0.0, uav, east, north, up, *floored, 0.0, 0.0)
         across, upwards = physics.SPEED_SIGMA_MPS[node.role]
         state.graph.add_node(node.velocity, (0.0, 0.0, 0.0), (across, across, upwards))
         state.nodes[node.node] = replace(node, mode="free", pose_t=t, t=max(t, node.t))
     else:
+        state.ledger.add("stands", t, node.index, east, north, up, *floored)
         state.nodes[node.node] = replace(node, mode="static", t=max(t, node.t))
 
 
 def begin_at_base(state: FusionState, node: NodeState, t: float) -> None:
     """A responder whose first position nobody gave enters at the base: 3 m horizontally, 1 m in height."""
     place(state, node, t, state.base_place(), physics.ENTRY_SIGMA_M)
+
+
+def waits_for_ranges(state: FusionState, node: NodeState, t: float) -> bool:
+    """Whether ranges to known places will soon tell where a node is, and no base says where it entered."""
+    anchored = any(n.role in ("base", "anchor") and n.decided for n in state.nodes.values())
+    based = any(n.mode == "fixed" for n in state.nodes.values())
+    return anchored and not based and t - node.t < physics.WAIT_FOR_RANGES_S
 
 
 def attach_unit(state: FusionState, node: NodeState, unit_heading_rad: float | None) -> None:
@@ -106,7 +118,11 @@ def attach_unit(state: FusionState, node: NodeState, unit_heading_rad: float | N
     turn = initial_turn(node.heading_rad, unit_heading_rad)
     sigma = (turn_sigma(node), physics.BIAS_SIGMA_RADPS, physics.SCALE_SIGMA)
     state.graph.add_node(node.unit, (turn, 0.0, 0.0), sigma)
-    state.nodes[node.node] = replace(node, mode="unit")
+    uav = float(node.role == "uav")
+    nothing = (0.0,) * 6
+    state.ledger.add("begins", node.pose_t, node.index, 1.0, uav, *nothing, turn, sigma[0])
+    turned = sigma[0] > physics.TURNED_SIGMA_RAD
+    state.nodes[node.node] = replace(node, mode="unit", turned=turned)
 
 
 def turn_sigma(node: NodeState) -> float:
@@ -157,10 +173,11 @@ def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float)
         return False
     if node.mode == "static":
         state.graph.delete_nodes([node.position])
-        node = replace(node, mode="undecided")
+        node = replace(node, mode="undecided", index=state.number(name))
         state.say("node_moved", t, name, f"{name} was dropped anew by {by.node}")
     wide = (NO_PRIOR_SIGMA_M,) * 3
     place(state, node, t, where_m, wide)
+    state.ledger.add("drops", t, node.index, by.index)
     start = state.graph.rows(state.nodes[name].position).start
     information = np.array([s**-2 for s in physics.DROP_SIGMA_M])
     axes = np.arange(3)

@@ -7,8 +7,9 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.introduce import attach_unit, begin_at_base
+from estimator.fusion.introduce import attach_unit, begin_at_base, waits_for_ranges
 from estimator.fusion.nodes import NodeState
+from estimator.fusion.physics import NOISES
 from estimator.fusion.rows import Linear
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
@@ -76,6 +77,11 @@ def move_units(state: FusionState, readings: Sequence[Displacement], turns: list
             state.count("not_fused")
             continue
         if node.mode == "undecided":
+            if waits_for_ranges(state, node, reading.t):
+                text = f"nobody said where {node.node} entered: its displacements wait for ranges that tell"
+                state.say("not_fused", reading.t, node.node, text, once=f"{node.node} waits for ranges")
+                state.count("not_fused")
+                continue
             begin_at_base(state, node, _start_of(reading, None))
         if state.nodes[node.node].mode == "free":
             attach_unit(state, state.nodes[node.node], reading.heading_rad)
@@ -111,7 +117,15 @@ def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[L
         state.say("outlier", reading.t, node.node, text)
         state.count("outlier")
     if increment.turn is not None:
-        turns.append(increment.turn)
+        told = increment.turn
+        state.ledger.add(
+            "singles", reading.t, node.index, 4.0, told.value, told.sigma, float(NOISES.index(told.noise))
+        )
+        turns.append(told)
+    given = float(reading.sigma_m is not None)
+    variances = increment.noise[[0, 2, 3, 4, 5]].tolist()
+    delta = increment.delta_m.tolist()
+    state.ledger.add("steps", reading.t, node.index, node.pose_t, *delta, *variances, given)
     step.delta_m = step.delta_m + increment.delta_m
     step.duration_s += increment.duration_s
     step.noise = step.noise + increment.noise
@@ -219,6 +233,9 @@ def drift_unit(state: FusionState, node: NodeState, t: float) -> None:
     wander = physics.SILENT_M_PER_ROOT_S**2 * duration
     noise = np.diag([wander, wander, 0.1 * wander])
     state.graph.advance(rows[None], state.graph.reference[rows][None], np.eye(3)[None], noise[None])
+    state.ledger.add(
+        "steps", t, node.index, node.pose_t, 0.0, 0.0, 0.0, wander, 0.1 * wander, 0.0, 0.0, 0.0, 1.0
+    )
     state.nodes[node.node] = replace(node, pose_t=t, trail=())
 
 

@@ -19,6 +19,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     Attributes:
         node: the node.
         role: what it is.
+        index: number of its block in the ledger; a node that is moved gets a new one.
         named: its role was told by a `node` reading, not guessed from the first reading that named it.
         mode: how its position is held.
         t: epoch of its newest fused reading.
@@ -34,10 +35,13 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
         still: epochs and reported headings since it stands still, as far as they are not used yet.
         way_m: length of its way so far.
         pressure_t: epoch of its newest fused pressure.
+        turned: its unit's frame may be turned by any angle: every window is tried with several.
+        walk_factors: learned variances of its unit over the assumed ones: of displacements, of its heading.
     """
 
     node: str
     role: Role
+    index: int = -1
     named: bool = False
     mode: Mode = "undecided"
     t: float
@@ -53,6 +57,8 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     still: tuple[tuple[float, float], ...] = ()
     way_m: float = 0.0
     pressure_t: float | None = None
+    walk_factors: tuple[float, float] = (1.0, 1.0)
+    turned: bool = False
 
     @property
     def position(self) -> Variable:
@@ -78,45 +84,3 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     def moving(self) -> bool:
         """Whether its position changes with time."""
         return self.mode in ("unit", "free")
-
-
-class Clone(msgspec.Struct, frozen=True, array_like=True):
-    """A kept position of a moving node, for the sightings of an undecided one.
-
-    Attributes:
-        node: the node that moved on.
-        t: epoch.
-        still: epochs and reported headings since it stands still, as far as they are not used yet.
-        way_m: length of its way up to there.
-    """
-
-    node: str
-    t: float
-    way_m: float
-
-    @property
-    def position(self) -> Variable:
-        """Its block."""
-        return Variable("position", self.node, self.t)
-
-
-class Sighting(msgspec.Struct, frozen=True, array_like=True):
-    """A range or RSSI to an undecided node, kept until its position is decided.
-
-    Attributes:
-        kind: `range` or `rssi`.
-        t: epoch.
-        other: block of the node at the other end; None: it is fixed, at `offset_m`.
-        offset_m: where the other end stood from that block.
-        value: range (m) or power (dBm).
-        sigma: its standard deviation.
-        technology: owner of the technology's states.
-    """
-
-    kind: Literal["range", "rssi"]
-    t: float
-    other: Variable | None
-    offset_m: Vector3
-    value: float
-    sigma: float
-    technology: str

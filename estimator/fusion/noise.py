@@ -19,12 +19,16 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
         squares: sum of their squared errors.
         pairs: successive readings on links that it is learned from.
         products: sum of the products of their errors.
+        seen: readings that the share of outliers is learned from.
+        odd: how many of them were outliers.
     """
 
     count: float = physics.NOISE_PRIOR
     squares: float = physics.NOISE_PRIOR
     pairs: float = physics.NOISE_PRIOR
     products: float = physics.NOISE_PRIOR * physics.SHARED_NOISE
+    seen: float = 0.0
+    odd: float = 0.0
 
     @property
     def factor(self) -> float:
@@ -36,8 +40,15 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
         """Share of the variance that successive readings on one link have in common, 0 to 0.95."""
         return min(max(self.products / self.pairs / self.factor**2, 0.0), 0.95)
 
-    def with_errors(self, count: float, squares: float, pairs: float, products: float) -> "LearnedNoise":
+    def outliers(self, usual: float) -> float:
+        """Share of outliers, from the usual one on."""
+        return float((self.odd + physics.OUTLIER_PRIOR * usual) / (self.seen + physics.OUTLIER_PRIOR))
+
+    def with_errors(
+        self, count: float, squares: float, pairs: float, products: float, seen: float
+    ) -> "LearnedNoise":
         """What is known after more readings."""
+        keep_seen = physics.NOISE_MEMORY / (physics.NOISE_MEMORY + seen)
         keep = physics.NOISE_MEMORY / (physics.NOISE_MEMORY + count)
         keep_pairs = physics.NOISE_MEMORY / (physics.NOISE_MEMORY + pairs)
         return LearnedNoise(
@@ -45,6 +56,8 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
             keep * (self.squares + squares),
             keep_pairs * (self.pairs + pairs),
             keep_pairs * (self.products + products),
+            keep_seen * (self.seen + seen),
+            keep_seen * (self.odd + seen - count),
         )
 
 
@@ -54,6 +67,7 @@ class Link(msgspec.Struct, frozen=True, array_like=True):
     Attributes:
         t: its epoch.
         way_m: how far both ends had walked by then.
+        number: of the link in the ledger.
         alike: how many readings, itself included, share its error.
         kept: how much of the error before it still held, 0 to 1.
         error: its error in units of the assumed sigma; None before it is fused.
@@ -61,6 +75,7 @@ class Link(msgspec.Struct, frozen=True, array_like=True):
 
     t: float
     way_m: float
+    number: int = -1
     alike: float = 1.0
     kept: float = 0.0
     error: float | None = None
@@ -69,7 +84,7 @@ class Link(msgspec.Struct, frozen=True, array_like=True):
         """The link at its next reading."""
         moved, waited = abs(way_m - self.way_m), abs(t - self.t)
         kept = math.exp(-moved / physics.SHARED_M - waited / physics.SHARED_S)
-        return Link(t, way_m, 1.0 + kept * self.alike, kept, self.error)
+        return Link(t, way_m, self.number, 1.0 + kept * self.alike, kept, self.error)
 
 
 def link_sigma(noise: LearnedNoise, nominal: float, alike: float) -> float:

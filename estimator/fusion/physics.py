@@ -7,24 +7,30 @@ from math import radians
 
 from estimator.graph.robust import Mixture
 
-TICK_S = 0.2
-"""Readings of one tick are linearised together; a runner moves 0.6 m in it, which interpolation takes out."""
+TICK_S = 1.0
+"""Readings of one tick are linearised together; what its bearer walks in it, the unit's own way takes out."""
+
+FREE_TICK_S = 0.25
+"""The same for nodes without PDR, whose velocity changes."""
 
 # A PDR unit (foot-mounted, or wheels), where it does not tell its own sigma.
 WALK_M_PER_ROOT_M = 0.035
 """Random error of a step, in any direction: 3.5 cm after 1 m, growing with the root of the way."""
 STAND_M_PER_ROOT_S = 0.005
 DISPLACEMENT_FLOOR_M = 0.005
-HEADING_WALK_RAD_PER_ROOT_M = radians(0.4)
+HEADING_WALK_RAD_PER_ROOT_M = radians(0.25)
 """A boot turns a little against the unit's frame with every step: a few tenths of a degree."""
 GYRO_WALK_RAD_PER_ROOT_S = radians(0.03)
 """Angle random walk of a consumer MEMS gyro, 0.2 to 2 degrees per root hour, and a trembling foot."""
 BIAS_SIGMA_RADPS = radians(0.3)
 """Gyro bias after the unit's own calibration at switch-on: 0.1 to 0.5 degrees a second once warm."""
 BIAS_WALK_RADPS_PER_ROOT_S = radians(0.001)
-SCALE_SIGMA = 0.01
+SCALE_SIGMA = 0.02
 SCALE_WALK_PER_ROOT_S = 1e-5
 HEADING_SIGMA_RAD = 0.1
+TURNED_SIGMA_RAD = 0.6
+"""A heading that is less sure than this is no small angle: it is tried all round."""
+TURNS = 8
 STILL_MPS = 0.03
 STILL_TURN_RADPS = radians(3.0)
 """Slower than both, a unit stands still, and what it reports as turn is gyro bias (ZARU)."""
@@ -45,6 +51,7 @@ SIGMA_FLOOR_M = 0.01
 HEADING_FLOOR_RAD = 1e-3
 ENTRY_SIGMA_M = (3.0, 3.0, 1.0)
 """Responders whose first position nobody gives enter at the base, within this."""
+WAIT_FOR_RANGES_S = 10.0
 DROP_SIGMA_M = (0.5, 0.5, 0.3)
 ANCHOR_SIGMA_M = 0.05
 SURVEY_SIGMA_M = 0.5
@@ -59,9 +66,13 @@ LAYER_SIGMA = 0.05
 
 RANGE_SIGMA_M: dict[str, float] = {"uwb": 0.3, "ultrasound": 0.05, "rtt": 1.3}
 RANGE_SIGMA_OTHER_M = 0.5
-RANGE_SCALE_SIGMA = 0.05
+RANGE_SCALE_SIGMA = 0.005
+"""A clock is good to a few parts per million; what is left is calibration."""
+RANGE_SCALE_WIDE = 0.15
 """M: a public UWB-like data set carries +7 % scale."""
-RANGE_BIAS_SIGMA_M: dict[str, float] = {"uwb": 0.3, "ultrasound": 0.05, "rtt": 1.5}
+UNCALIBRATED = 0.3
+"""How many technologies have a scale of the wide kind."""
+RANGE_BIAS_SIGMA_M: dict[str, float] = {"uwb": 0.15, "ultrasound": 0.05, "rtt": 1.5}
 RANGE_BIAS_OTHER_SIGMA_M = 0.5
 RANGE_NOISE = Mixture(outliers=0.1, shift=1.5, spread=3.0)
 """Obstructed ranges are too long: M, Wi-Fi RTT's 95th percentile is at 4 to 6 m."""
@@ -72,6 +83,13 @@ RSSI_POWER_DBM = -45.0
 RSSI_POWER_SIGMA_DB = 8.0
 RSSI_EXPONENT = 2.2
 RSSI_EXPONENT_SIGMA = 0.4
+NEAR_M = 1.5
+NEAR_SIGMA_DB = 4.5
+"""Paper A: relative ranges within 1.5 m are accurate, in fire as well."""
+ENCOUNTER_S = 3.0
+ENCOUNTER_READINGS = 3
+ENCOUNTER_M = 3.0
+"""An estimate that puts both ends farther apart does not believe in an encounter."""
 RSSI_NOISE = Mixture(outliers=0.05, shift=-8.0, spread=12.0)
 """A wall, a body or a fire takes away power; nothing adds much."""
 
@@ -80,14 +98,30 @@ BEARING_NOISE = Mixture(outliers=0.1, shift=0.0, spread=1.0)
 FIX_NOISE = Mixture(outliers=0.02, shift=0.0, spread=30.0)
 HEIGHT_NOISE = Mixture(outliers=0.05, shift=0.0, spread=5.0)
 TURN_NOISE = Mixture(outliers=0.1, shift=0.0, spread=radians(2.0))
+DROP_NOISE = Mixture(outliers=0.02, shift=0.0, spread=3.0)
+NOISES = (
+    RANGE_NOISE,
+    RSSI_NOISE,
+    BEARING_NOISE,
+    BEARING_NOISE,
+    FIX_NOISE,
+    HEIGHT_NOISE,
+    TURN_NOISE,
+    DROP_NOISE,
+)
+"""As the ledger numbers them: pairs by their kind (range, RSSI, bearing, bearing from a heading), then
+others."""
 
 SHARED_NOISE = 0.3
 """Share of a reading's variance that is the link's own until an end moves on, before it is learned."""
 SHARED_M = 4.0
 """A room's width: having walked it, one looks through other walls."""
 SHARED_S = 600.0
+FREE_WAY_MPS = 0.5
 NOISE_MEMORY = 300.0
 """How many readings back the noise of a technology is learned from."""
+OUTLIER_PRIOR = 50.0
+"""How many readings the usual share of outliers counts as."""
 NOISE_PRIOR = 20.0
 """How many readings the assumed noise counts as."""
 
@@ -95,12 +129,7 @@ PENDING_S = 2.0
 """A reading waits so long for the displacement that covers its epoch."""
 
 # Static nodes that begin with ranges or RSSI only.
-CLONE_STEP_M = 1.5
-"""A kept position of the node that measured, each so many metres of its way."""
-CLONES_MAX = 60
-CLONE_SIGMA_M = 0.02
 SIGHTINGS_MIN = 6
-SIGHTINGS_MAX = 300
 MODE_MARGIN = 7.0
 """How much worse (in log likelihood) the second mode must be: odds of 1 to 1,000."""
 DECIDED_SIGMA_M: dict[str, float] = {"range": 2.0, "rssi": 4.0}

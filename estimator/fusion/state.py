@@ -5,8 +5,10 @@ from typing import Literal, Self
 import numpy as np
 
 from estimator.estimate import Notice, NoticeCode, Vector3
-from estimator.fusion.nodes import Clone, NodeState, Sighting
+from estimator.fusion.ledger import Ledger
+from estimator.fusion.nodes import NodeState
 from estimator.fusion.noise import LearnedNoise, Link
+from estimator.fusion.prior import Prior
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.measurements import AnyReading
@@ -22,8 +24,7 @@ class FusionState:
         origin_wgs84: latitude (°), longitude (°), height (m) of the local origin, if known.
         graph: L, b and x.
         nodes: every node ever introduced, in order of introduction.
-        sightings: of undecided nodes.
-        clones: kept positions of moving nodes.
+        sightings: how many each undecided node has.
         waiting: readings whose epoch no displacement has covered yet.
         noise: what was learned of each technology's noise.
         links: the newest reading of each technology between two nodes.
@@ -31,7 +32,17 @@ class FusionState:
         counts: readings fused, not fused, weighed as outliers.
         said: notices that are given once.
         tried: how many sightings an undecided node had when it was last tried.
-        clone_step: way between kept positions, where it is no longer the usual one (m).
+        newest_t: end of the newest tick, Unix seconds.
+        bent_m: how far updates have bent the window since it was last solved (m).
+        due: the window is to be solved again at once.
+        begun_t: end of the first tick with a node in it.
+        refreshed_t: end of the tick at which the window was last solved.
+        window_t: epoch of the window's first keyframe.
+        prior: what is known from before the window.
+        uncalibrated: probability that a ranging technology has a large scale or bias.
+        ledger: what has been fused, as tables.
+        owners: the node of each number in the ledger.
+        sources: the technologies of the ledger's readings.
         notices: of this tick.
     """
 
@@ -39,8 +50,7 @@ class FusionState:
         self.origin_wgs84 = origin_wgs84
         self.graph = Kirchhoff()
         self.nodes: dict[str, NodeState] = {}
-        self.sightings: dict[str, tuple[Sighting, ...]] = {}
-        self.clones: dict[str, tuple[Clone, ...]] = {}
+        self.sightings: dict[str, int] = {}
         self.waiting: tuple[AnyReading, ...] = ()
         self.noise: dict[str, LearnedNoise] = {}
         self.links: dict[str, Link] = {}
@@ -48,17 +58,31 @@ class FusionState:
         self.counts: dict[str, int] = {"fused": 0, "not_fused": 0, "outlier": 0}
         self.said: dict[str, None] = {}
         self.tried: dict[str, int] = {}
-        self.clone_step: dict[str, float] = {}
+        self.newest_t = 0.0
+        self.bent_m = 0.0
+        self.due = False
+        self.begun_t: float | None = None
+        self.refreshed_t = 0.0
+        self.window_t: float | None = None
+        self.prior: Prior | None = None
+        self.uncalibrated: dict[str, float] = {}
+        self.ledger = Ledger()
+        self.owners: tuple[str, ...] = ()
+        self.sources: tuple[str, ...] = ()
         self.notices: list[Notice] = []
 
     def copy(self) -> Self:
         """An independent copy, without this tick's notices."""
         twin = type(self)(self.origin_wgs84)
         twin.graph = self.graph.copy()
-        twin.nodes, twin.sightings, twin.clones = dict(self.nodes), dict(self.sightings), dict(self.clones)
+        twin.nodes, twin.sightings = dict(self.nodes), dict(self.sightings)
         twin.waiting, twin.noise, twin.reference_pa = self.waiting, dict(self.noise), self.reference_pa
         twin.counts, twin.said, twin.tried = dict(self.counts), dict(self.said), dict(self.tried)
-        twin.clone_step, twin.links = dict(self.clone_step), dict(self.links)
+        twin.links = dict(self.links)
+        twin.newest_t, twin.due, twin.begun_t = self.newest_t, self.due, self.begun_t
+        twin.refreshed_t, twin.window_t, twin.prior = self.refreshed_t, self.window_t, self.prior
+        twin.uncalibrated, twin.bent_m = dict(self.uncalibrated), self.bent_m
+        twin.ledger, twin.owners, twin.sources = self.ledger.copy(), self.owners, self.sources
         return twin
 
     def count(self, what: Count, number: int = 1) -> None:
@@ -77,8 +101,19 @@ class FusionState:
         """The node, introduced with a guessed role if no reading has named it before."""
         found = self.nodes.get(name)
         if found is None:
-            found = self.nodes[name] = NodeState(node=name, role=role, t=t)
+            found = self.nodes[name] = NodeState(node=name, role=role, t=t, index=self.number(name))
         return found
+
+    def number(self, name: str) -> int:
+        """A new number in the ledger for a node."""
+        self.owners = (*self.owners, name)
+        return len(self.owners) - 1
+
+    def source(self, name: str) -> int:
+        """Number of a technology in the ledger."""
+        if name not in self.sources:
+            self.sources = (*self.sources, name)
+        return self.sources.index(name)
 
     def place(self, node: NodeState) -> Array:
         """Position of a decided node, 3 (m).

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from msgspec.structs import replace
 
 from estimator.estimate import Notice
-from estimator.fusion import beginnings, free, held, introduce, motion, physics, sight
+from estimator.fusion import beginnings, free, held, introduce, motion, physics
 from estimator.fusion.rows import Linear, Pair, Stack
 from estimator.fusion.state import FusionState
 from estimator.fusion.update import update
@@ -42,6 +42,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyReading]
         What was noticed.
     """
     state.notices = []
+    state.newest_t = max(state.newest_t, until_t)
     for reading in readings:
         if isinstance(reading, Node):
             introduce.introduce(state, reading)
@@ -64,11 +65,25 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyReading]
         wait = not late and not gone.intersection(names_of(reading)) and _ahead(state, reading)
         (waiting if wait else ready).append(reading)
     state.waiting = tuple(waiting)
-    _hold(state, ready, linear)
+    for part in _parts(state, ready):
+        _hold(state, part, linear)
+        linear = []
     for reading in retired:
         _retire(state, reading)
-    sight.prune(state)
+    keep_poses(state)
     return state.notices
+
+
+def keep_poses(state: FusionState) -> None:
+    """Take down where everyone who moves is now: the next solution of the window starts from there."""
+    reference, starts = state.graph.reference, state.graph.starts
+    for node in state.nodes.values():
+        if node.moving:
+            unit = node.mode == "unit"
+            rest = starts[node.unit if unit else node.velocity]
+            here = starts[node.position]
+            values = (*reference[here : here + 3].tolist(), *reference[rest : rest + 3].tolist())
+            state.ledger.add("poses", node.pose_t, node.index, float(unit), *values)
 
 
 def flush(state: FusionState) -> None:
@@ -102,6 +117,22 @@ def _hold(state: FusionState, readings: Sequence[AnyReading], linear: list[Linea
             node = state.nodes.get(name)
             if node is not None and node.t < reading.t and node.mode != "retired":
                 state.nodes[name] = replace(node, t=reading.t)
+
+
+def _parts(state: FusionState, readings: Sequence[AnyReading]) -> list[list[AnyReading]]:
+    """Readings that are held together: all, but by parts of the tick where a node without PDR is among them.
+
+    A unit's own way tells where it stood at each epoch; a velocity that changes does so for a moment only.
+    """
+    together: list[AnyReading] = []
+    parts: dict[int, list[AnyReading]] = {}
+    for reading in readings:
+        nodes = (state.nodes.get(name) for name in names_of(reading))
+        if any(n is not None and n.role in MOVING_ROLES and n.mode in ("free", "undecided") for n in nodes):
+            parts.setdefault(int(reading.t / physics.FREE_TICK_S), []).append(reading)
+        else:
+            together.append(reading)
+    return [together, *(parts[k] for k in sorted(parts))]
 
 
 def names_of(reading: AnyReading) -> tuple[str, ...]:
@@ -166,8 +197,14 @@ def _pair(state: FusionState, reading: Range | Rssi | Bearing) -> Pair | None:
             state.count("fused")
         return made
     undecided, other = (b, a) if a.decided else (a, b)
-    if not other.decided or isinstance(reading, Bearing) or not sight.sight(state, undecided, other, reading):
+    if not other.decided or isinstance(reading, Bearing):
         state.count("not_fused")
+        return None
+    if other.moving and undecided.role in MOVING_ROLES:
+        state.count("not_fused")
+        return None
+    held.enter(state, a, b, reading)
+    state.sightings[undecided.node] = state.sightings.get(undecided.node, 0) + 1
     return None
 
 
@@ -177,8 +214,5 @@ def _retire(state: FusionState, reading: Retire) -> None:
         state.say("conflict", reading.t, node.node, f"{node.node} is retired already")
         state.count("not_fused")
         return
-    if any(s.other == node.position for sightings in state.sightings.values() for s in sightings):
-        for name, sightings in state.sightings.items():
-            state.sightings[name] = tuple(s for s in sightings if s.other != node.position)
     introduce.retire(state, node, reading.t)
     state.count("fused")

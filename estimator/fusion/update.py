@@ -6,9 +6,11 @@ from msgspec.structs import replace
 from estimator.fusion.rows import Rows, Stack
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array, Cholesky, factorise, half_solve, inverse, solve
-from estimator.graph.kirchhoff import scatter
+from estimator.graph.kirchhoff import Kirchhoff, scatter
 from estimator.graph.robust import Weighted, weigh
 
+LEVER_M = 20.0
+"""A heading's error at the far end of a room's way."""
 BENT = 0.2
 """Curvature left alone: residuals that differ from their linear forecast by less, in standard deviations."""
 HALVINGS = 4
@@ -56,9 +58,19 @@ def update(state: FusionState, stack: Stack, iterations: int = 6) -> Weighted | 
         predicted = variances(rows, cholesky)
     if not np.isfinite(x).all():
         return None
+    state.bent_m += bend_m(graph, x - start)
     graph.settle(matrix, x)
     _learn(state, stack, rows.residual, predicted, weighted)
     return weighted
+
+
+def bend_m(graph: Kirchhoff, moved: Array) -> float:
+    """How far an update has bent what is linearised: the largest turn of a unit, at arm's length (m)."""
+    farthest = 0.0
+    for variable, row in graph.starts.items():
+        if variable.kind == "unit":
+            farthest = max(farthest, LEVER_M * abs(float(moved[row])))
+    return farthest
 
 
 def variances(rows: Rows, cholesky: Cholesky) -> Array:
@@ -105,7 +117,8 @@ def _learn(state: FusionState, stack: Stack, residual: Array, predicted: Array, 
     for i, source in enumerate(stack.sources):
         if not source:
             continue
-        known = sums.setdefault(source, [0.0, 0.0, 0.0, 0.0])
+        known = sums.setdefault(source, [0.0, 0.0, 0.0, 0.0, 0.0])
+        known[4] += 1.0
         assumed = stack.nominal[i] ** 2
         known[0] += good[i]
         known[1] += good[i] * (off[i] ** 2 + unsure[i]) / assumed
@@ -117,6 +130,6 @@ def _learn(state: FusionState, stack: Stack, residual: Array, predicted: Array, 
             known[2] += good[i]
             known[3] += good[i] * (error * link.error - unsure[i] / assumed)
         state.links[stack.links[i]] = replace(link, error=error if good[i] > SAME_PLACE else None)
-    for source, (count, squares, pairs, products) in sums.items():
-        state.noise[source] = state.learned(source).with_errors(count, squares, pairs, products)
+    for source, (count, squares, pairs, products, seen) in sums.items():
+        state.noise[source] = state.learned(source).with_errors(count, squares, pairs, products, seen)
     state.count("outlier", int((weighted.good < 0.5).sum()))

@@ -19,7 +19,7 @@ class PdrUnit:
         period_s: it reports this often (s).
         heading_sigma_rad: error of its alignment to east at the start (rad).
         bias_radps: what its gyro turns the frame by, each second (rad/s).
-        heading_walk_rad: random walk of the heading error, each period (rad).
+        heading_walk_rad: random walk of the heading error, each period in which the foot steps (rad).
         scale: it reports the true displacement divided by this.
         noise_m: standard deviation per axis and report while moving (m).
         rest_noise_m: the same while the foot stands (m).
@@ -67,8 +67,9 @@ def reckon(truth: TrueTrack, unit: PdrUnit, rng: np.random.Generator) -> Dead:
     ends = np.arange(truth.t_s[0] + unit.period_s, truth.t_s[-1] + 1e-6, unit.period_s)
     n = len(ends)
     true = np.diff(truth.at(np.concatenate([truth.t_s[:1], ends])), axis=0)
+    stepped = np.linalg.norm(true, axis=1) > REST_M
     psi = rng.normal(0.0, unit.heading_sigma_rad) + np.cumsum(
-        unit.bias_radps * unit.period_s + rng.normal(0.0, unit.heading_walk_rad, n)
+        unit.bias_radps * unit.period_s + rng.normal(0.0, unit.heading_walk_rad, n) * stepped
     )
     delta = np.stack(
         [

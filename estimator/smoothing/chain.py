@@ -1,7 +1,7 @@
 """Normal equations of a chain of keyframes with a border: block tridiagonal, and an arrow to what lasts.
 
     | D0  E0ᵀ          B0 |
-    | E0  D1  E1ᵀ      B1 |        keyframes k, each n numbers: all moving nodes at that second
+    | E0  D1  E1ᵀ      B1 |        keyframes k, each n numbers: all moving nodes at that epoch
     |     E1  D2  …    B2 |        border, s numbers: static nodes, technologies
     | B0ᵀ B1ᵀ B2ᵀ …    C  |
 
@@ -9,13 +9,26 @@ Elimination along the chain is operation 3 of paper A (eq. 17), keyframe after k
 end is the Kirchhoff matrix of the border. Cost grows with the length of the chain, not with its cube.
 """
 
+from typing import NamedTuple
+
 import numpy as np
-from scipy.linalg import solve_triangular
-from scipy.linalg.lapack import dpotrf
 
 from estimator.graph.dense import Array, factorise, inverse, mended, solve
+from estimator.graph.kernels import eliminate, selected_inverse, substitute
 
-CHUNK = 64
+JITTERS = (0.0, 1e-12, 1e-10, 1e-8)
+
+
+class Remainder(NamedTuple):
+    """What the keyframes before one say of it and of the border: a Kirchhoff matrix and its vector.
+
+    Attributes:
+        matrix: (n + s) × (n + s), the keyframe first.
+        vector: n + s.
+    """
+
+    matrix: Array
+    vector: Array
 
 
 class Chain:
@@ -28,6 +41,8 @@ class Chain:
         corner: C, s × s.
         gradient: of the keyframes, k × n.
         corner_gradient: of the border, s.
+        steps: of the keyframes, k × n, after `solve`.
+        fixed: of the border, s, after `solve`.
     """
 
     def __init__(self, length: int, width: int, border: int) -> None:
@@ -38,82 +53,112 @@ class Chain:
         self.gradient: Array = np.zeros((length, width))
         self.corner_gradient: Array = np.zeros(border)
         self._factors: Array = np.zeros((length, width, width))
-        self._border_covariance: Array = np.zeros((border, border))
+        self._covariance: Array = np.zeros((border, border))
+        self._done = 0
+
+    def damp(self, damping: float) -> None:
+        """Raise the diagonal by a share of itself (Marquardt): a shorter step, and more along the slope."""
+        if damping > 0.0:
+            numbers, rest = range(self.diagonal.shape[1]), range(len(self.corner))
+            self.diagonal[:, numbers, numbers] *= 1.0 + damping
+            self.corner[rest, rest] *= 1.0 + damping
+
+    def remainder(self, keyframe: int) -> Remainder:
+        """Eliminate what lies before a keyframe: what is left of it on that keyframe and the border.
+
+        Args:
+            keyframe: not before one asked for earlier.
+
+        Raises:
+            ValueError: the matrix is not finite, or far from positive definite.
+        """
+        self._eliminate(keyframe)
+        width = self.diagonal.shape[1]
+        size = width + len(self.corner)
+        matrix = np.zeros((size, size))
+        matrix[:width, :width] = self.diagonal[keyframe]
+        matrix[:width, width:] = self.border[keyframe]
+        matrix[width:, :width] = self.border[keyframe].T
+        matrix[width:, width:] = self.corner
+        return Remainder(
+            0.5 * (matrix + matrix.T), np.concatenate([self.gradient[keyframe], self.corner_gradient])
+        )
+
+    def _eliminate(self, until: int) -> None:
+        if until <= self._done:
+            return
+        if not np.isfinite(self.diagonal).all():
+            raise ValueError("the normal equations of the incident are not finite")
+        width = range(self.diagonal.shape[1])
+        kept = [a.copy() for a in (self.diagonal, self.link, self.border, self.gradient)]
+        for jitter in JITTERS:
+            self.diagonal[:, width, width] *= 1.0 + jitter
+            try:
+                eliminate(
+                    self._done,
+                    until,
+                    self.diagonal,
+                    self.link,
+                    self.border,
+                    self.gradient,
+                    self._factors,
+                )
+            except np.linalg.LinAlgError:
+                self.diagonal, self.link, self.border, self.gradient = (a.copy() for a in kept)
+                continue
+            count = (until - self._done) * self.diagonal.shape[1]
+            wide = self.border[self._done : until].reshape(count, len(self.corner))
+            self.corner -= wide.T @ wide
+            self.corner_gradient -= wide.T @ self.gradient[self._done : until].ravel()
+            self._done = until
+            return
+        raise ValueError("the normal equations of the incident are not positive definite")
 
     def solve(self) -> tuple[Array, Array]:
         """The step of all keyframes, k × n, and of the border, s; the arrays are used up.
 
         Raises:
-            ValueError: the matrix is not finite.
+            ValueError: the matrix is not finite, or far from positive definite.
         """
         length, width, _ = self.diagonal.shape
-        for start in range(0, length, CHUNK):
-            end = min(start + CHUNK, length)
-            for j in range(start, end):
-                self._eliminate(j)
-            wide = self.border[start:end].reshape((end - start) * width, len(self.corner))
-            self.corner -= wide.T @ wide
-            self.corner_gradient -= wide.T @ self.gradient[start:end].ravel()
+        self._eliminate(length)
         try:
             cholesky = factorise(self.corner)
         except ValueError:
             cholesky = factorise(mended(self.corner))
-        self._border_covariance = inverse(cholesky)
-        fixed = solve(cholesky, self.corner_gradient)
-        steps = np.zeros((length, width))
-        for j in range(length - 1, -1, -1):
-            right = self.gradient[j] - self.border[j] @ fixed
-            if j < length - 1:
-                right -= self.link[j].T @ steps[j + 1]
-            steps[j] = solve_triangular(self._factors[j], right, trans=1, lower=True, check_finite=False)
-        return steps, fixed
+        self._covariance = inverse(cholesky)
+        self.fixed = solve(cholesky, self.corner_gradient)
+        self.steps: Array = np.zeros((length, width))
+        substitute(self._factors, self.link, self.border, self.gradient, self.fixed, length, self.steps)
+        return self.steps, self.fixed
 
-    def _eliminate(self, j: int) -> None:
-        """Factorise D, leave W = C⁻¹ [Eᵀ B g] in the place of E, B and g, and carry it on."""
-        if j > 0:
-            before = self.link[j - 1]
-            self.diagonal[j] -= before @ before.T
-            self.border[j] -= before @ self.border[j - 1]
-            self.gradient[j] -= before @ self.gradient[j - 1]
-        factor, failed = dpotrf(self.diagonal[j], lower=1, clean=1)
-        if failed != 0:
-            if not np.isfinite(self.diagonal[j]).all():
-                raise ValueError("the normal equations of the incident are not finite")
-            factor = np.linalg.cholesky(mended(self.diagonal[j]))
-        self._factors[j] = factor
-        last = j == len(self.diagonal) - 1
-        parts = [self.border[j], self.gradient[j][:, None]]
-        if not last:
-            parts.append(self.link[j].T)
-        half = solve_triangular(factor, np.concatenate(parts, axis=1), lower=True, check_finite=False)
-        s = self.border.shape[2]
-        self.border[j], self.gradient[j] = half[:, :s], half[:, s]
-        if not last:
-            self.link[j] = half[:, s + 1 :].T
+    def response(self, right: Array, corner: Array) -> tuple[Array, Array]:
+        """L⁻¹ of several right sides at once, after `solve`: how everything moves where a current is put in.
 
-    def covariances(self) -> tuple[Array, Array]:
-        """Marginal covariance of each keyframe, k × n × n, and of the border, s × s; after `solve`.
+        Args:
+            right: of the keyframes, k × n × c.
+            corner: of the border, s × c.
+        """
+        y, rest = right.copy(), corner.copy()
+        for j in range(len(y)):
+            y[j] = self._factors[j] @ y[j]
+            rest -= self.border[j].T @ y[j]
+            if j < len(y) - 1:
+                y[j + 1] -= self.link[j] @ y[j]
+        fixed: Array = self._covariance @ rest
+        for j in range(len(y) - 1, -1, -1):
+            back = y[j] - self.border[j] @ fixed
+            if j < len(y) - 1:
+                back -= self.link[j].T @ y[j + 1]
+            y[j] = self._factors[j].T @ back
+        return y, fixed
+
+    def covariances(self) -> tuple[Array, Array, Array]:
+        """After `solve`: covariance of each keyframe, k × n × n, with the next one, and of the border, s × s.
 
         The selected inverse, from the chain's end back to its start: only what the next keyframe and the
         border need is ever formed.
         """
-        length, width, _ = self.diagonal.shape
-        found = np.zeros((length, width, width))
-        border = self._border_covariance
-        ahead, ahead_border = np.zeros((width, width)), np.zeros((width, border.shape[0]))
-        for j in range(length - 1, -1, -1):
-            parts = [self.border[j]] if j == length - 1 else [self.border[j], self.link[j].T]
-            gain = solve_triangular(
-                self._factors[j], np.concatenate(parts, axis=1), trans=1, lower=True, check_finite=False
-            )
-            to_border, to_next = gain[:, : border.shape[0]], gain[:, border.shape[0] :]
-            with_border = -to_border @ border
-            own = solve_triangular(self._factors[j], np.eye(width), lower=True, check_finite=False)
-            covariance = own.T @ own - with_border @ to_border.T
-            if j < length - 1:
-                with_border -= to_next @ ahead_border
-                crossed = to_border @ ahead_border.T @ to_next.T
-                covariance += to_next @ ahead @ to_next.T + crossed + crossed.T
-            found[j] = 0.5 * (covariance + covariance.T)
-            ahead, ahead_border = found[j], with_border
-        return found, border
+        found, ahead = np.zeros_like(self.diagonal), np.zeros_like(self.link)
+        selected_inverse(self._factors, self.link, self.border, self._covariance, found, ahead)
+        return found, ahead, self._covariance

@@ -16,8 +16,9 @@ from estimator.fusion.order import Entry, end_of, entry, key, tick_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import fold_tick, names_of
 from estimator.measurements import AnyReading
+from estimator.smoothing.window import keep_up
 
-SPACING_S = ((2.0, 0.0), (8.0, 1.0), (32.0, 4.0), (float("inf"), 16.0))
+SPACING_S = ((4.0, 0.0), (16.0, 4.0), (float("inf"), 16.0))
 """Up to each age, checkpoints are kept so far apart: a reading late by x is folded anew over about x, no
 more."""
 
@@ -136,6 +137,7 @@ class Lag:
             after = before.copy()
             in_order = [e.reading for e in sorted(self._entries[tick], key=key)]
             self._notices[tick] = fold_tick(after, end_of(tick), in_order)
+            keep_up(after, end_of(tick))
             self._checkpoints.append((tick, after))
             self._folded = tick
             self._thin(tick)
@@ -145,12 +147,18 @@ class Lag:
     def _thin(self, newest: int) -> None:
         """Leave checkpoints out as they age; the two newest always stay."""
         kept = self._checkpoints[-2:]
-        for tick, state in reversed(self._checkpoints[:-2]):
+        buckets: set[tuple[float, int]] = set()
+        thinned = []
+        for tick, state in self._checkpoints[:-2]:
             age = end_of(newest) - end_of(tick)
             spacing = next(s for limit, s in SPACING_S if age <= limit)
-            if end_of(kept[0][0]) - end_of(tick) >= spacing or tick == self._checkpoints[0][0]:
-                kept.insert(0, (tick, state))
-        self._checkpoints = kept
+            bucket = (spacing, tick if spacing == 0.0 else int(end_of(tick) // spacing))
+            # The oldest of each bucket stays, so that what has grown old enough to be thinned is not lost
+            # again.
+            if bucket not in buckets:
+                buckets.add(bucket)
+                thinned.append((tick, state))
+        self._checkpoints = thinned + kept
 
     def _commit(self) -> None:
         """Forget readings that nothing can come before any more, and the checkpoints under them."""

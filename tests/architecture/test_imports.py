@@ -7,7 +7,7 @@ from pathlib import Path
 from importlinter.cli import EXIT_STATUS_SUCCESS, lint_imports
 
 ROOT = Path(__file__).resolve().parents[2]
-ALLOWED_IN_THE_ESTIMATOR = {"estimator", "numpy", "scipy", "msgspec"}
+ALLOWED_IN_THE_ESTIMATOR = {"estimator", "numpy", "scipy", "numba", "msgspec"}
 REACHING = {
     *("asyncio", "datetime", "io", "logging", "os", "pathlib", "random"),
     *("secrets", "socket", "subprocess", "threading", "time", "uuid"),

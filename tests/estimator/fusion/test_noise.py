@@ -10,7 +10,7 @@ def test_the_learned_factor_follows_the_errors_that_come_in() -> None:
     chance = np.random.default_rng(1)
     noise = LearnedNoise()
     for error in chance.normal(0.0, 1.7, 2000).tolist():
-        noise = noise.with_errors(1.0, error**2, 0.0, 0.0)
+        noise = noise.with_errors(1.0, error**2, 0.0, 0.0, 1.0)
     assert noise.factor == pytest.approx(1.7, rel=0.1)
 
 
@@ -20,9 +20,17 @@ def test_the_shared_part_of_the_noise_is_told_by_successive_errors() -> None:
     for k in range(4000):
         common = float(chance.normal(0.0, np.sqrt(0.6))) if k % 40 == 0 else common
         error = common + chance.normal(0.0, np.sqrt(0.4))
-        noise = noise.with_errors(1.0, error**2, 1.0, error * before)
+        noise = noise.with_errors(1.0, error**2, 1.0, error * before, 1.0)
         before = error
     assert noise.shared == pytest.approx(0.6, abs=0.2)
+
+
+def test_the_share_of_outliers_goes_from_the_usual_one_to_what_is_seen() -> None:
+    noise = LearnedNoise()
+    assert noise.outliers(0.1) == pytest.approx(0.1)
+    for _ in range(3000):
+        noise = noise.with_errors(0.6, 0.6, 0.0, 0.0, 1.0)
+    assert noise.outliers(0.1) == pytest.approx(0.4, abs=0.06)
 
 
 def test_alike_readings_are_together_worth_no_more_than_their_common_error_allows() -> None:

@@ -209,7 +209,8 @@ def test_a_retired_node_keeps_its_last_estimate() -> None:
 def test_what_cannot_be_true_or_is_not_fused_is_noticed(reading: AnyReading, code: str) -> None:
     tracker = folded(
         [
-            Node(t=0.0, node="ff1", role="responder"),
+            Node(t=0.0, node="base", role="base"),
+            Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0)),
             Node(t=0.0, node="ff2", role="responder"),
             Node(t=0.0, node="gone", role="beacon", position_m=(1.0, 1.0, 0.0)),
             Node(t=0.0, node="anchor", role="anchor", position_m=(5.0, 1.0, 0.0)),
@@ -223,6 +224,18 @@ def test_what_cannot_be_true_or_is_not_fused_is_noticed(reading: AnyReading, cod
     tracker.fold([Displacement(t=4.0, node=n, delta_m=(1.0, 0.0, 0.0)) for n in ("ff1", "ff2")])
     assert [n.code for n in tracker.take_notices()] == [code]
     assert tracker.take_notices() == []
+
+
+def test_who_entered_nobody_knows_where_waits_for_ranges_and_that_is_said() -> None:
+    tracker = folded(
+        [
+            Node(t=0.0, node="ff2", role="responder"),
+            Node(t=0.0, node="anchor", role="anchor", position_m=(5.0, 1.0, 0.0)),
+            Displacement(t=2.0, node="ff2", delta_m=(1.0, 0.0, 0.0)),
+        ]
+    )
+    assert [(n.code, n.node) for n in tracker.take_notices()] == [("not_fused", "ff2")]
+    assert estimate(tracker, "ff2").position_m is None
 
 
 def test_a_reading_that_names_an_unknown_node_introduces_it() -> None:

@@ -1,0 +1,94 @@
+"""What has been fused, as tables of numbers: what a window or a whole incident is solved again from."""
+
+from collections.abc import Sequence
+from typing import Literal, Self
+
+import numpy as np
+
+from estimator.graph.dense import Array
+
+Table = Literal["pairs", "singles", "steps", "drops", "begins", "stands", "poses"]
+
+COLUMNS: dict[Table, tuple[str, ...]] = {
+    "pairs": ("t", "kind", "a", "b", "value", "sigma", "source", "constant", "alike", "link"),
+    "singles": ("t", "node", "axis", "value", "sigma", "noise"),
+    "steps": ("t", "node", "start_t", "e", "n", "u", "across2", "up2", "turn2", "bias2", "scale2", "given"),
+    "drops": ("t", "node", "by"),
+    "begins": ("t", "node", "unit", "role", "e", "n", "u", "se", "sn", "su", "turn", "turn_sigma"),
+    "stands": ("t", "node", "e", "n", "u", "se", "sn", "su"),
+    "poses": ("t", "node", "unit", "e", "n", "u", "a", "b", "c"),
+}
+"""pairs: readings between two nodes; singles: fixes, heights and gyro biases, `axis` 0 to 5 of the six
+numbers of a moving node; steps: displacements with the variances that they add; drops: who laid what; begins
+and stands: how moving and standing nodes entered, with their priors; poses: where moving nodes were thought
+to be. Nodes are told by the number of their block."""
+
+MERGED = 64
+"""Chunks of a table that are joined to one when there are more."""
+
+
+class Ledger:
+    """Append-only tables in chunks that are never changed, so that copies share them.
+
+    Args:
+        complete: nothing is ever forgotten: the whole incident is to be solved from it.
+
+    Attributes:
+        chunks: the tables' closed chunks, each m × its columns.
+    """
+
+    def __init__(self, complete: bool = False) -> None:
+        self.complete = complete
+        self.chunks: dict[Table, tuple[Array, ...]] = dict.fromkeys(COLUMNS, ())
+        self._open: dict[Table, list[tuple[float, ...]]] = {name: [] for name in COLUMNS}
+
+    def copy(self) -> Self:
+        """An independent copy."""
+        self.close()
+        twin = type(self)(self.complete)
+        twin.chunks = dict(self.chunks)
+        return twin
+
+    def add(self, table: Table, *row: float) -> None:
+        """Append one row."""
+        self._open[table].append(row)
+
+    def extend(self, table: Table, rows: Array) -> None:
+        """Append rows, m × columns."""
+        self.close()
+        self.chunks[table] = (*self.chunks[table], rows)
+
+    def close(self) -> None:
+        """Close the open rows to chunks: what has been added until now."""
+        for name, rows in self._open.items():
+            if rows:
+                self.chunks[name] = (*self.chunks[name], np.array(rows, dtype=np.float64))
+                rows.clear()
+                if len(self.chunks[name]) > MERGED:
+                    self.chunks[name] = (np.concatenate(self.chunks[name]),)
+
+    def table(self, name: Table) -> Array:
+        """All rows of a table, m × columns, in the order in which they were added."""
+        self.close()
+        chunks = self.chunks[name]
+        if not chunks:
+            return np.zeros((0, len(COLUMNS[name])))
+        if len(chunks) > 1:
+            self.chunks[name] = chunks = (np.concatenate(chunks),)
+        return chunks[0]
+
+    def replace(self, name: Table, rows: Array) -> None:
+        """Put other rows in the place of a whole table."""
+        self.close()
+        self.chunks[name] = (rows,) if len(rows) else ()
+
+    def forget(self, before_t: float, tables: Sequence[Table]) -> None:
+        """Leave out rows of epochs before `before_t`."""
+        for name in () if self.complete else tables:
+            rows = self.table(name)
+            self.replace(name, rows[rows[:, 0] >= before_t])
+
+
+def column(table: Table, name: str) -> int:
+    """Number of a table's column."""
+    return COLUMNS[table].index(name)

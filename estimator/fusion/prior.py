@@ -1,0 +1,24 @@
+"""What is known from before the window."""
+
+from typing import NamedTuple
+
+from estimator.graph.dense import Array
+
+Key = tuple[str, int]
+"""A block: ("walk", node number), ("stand", node number), ("range" or "rssi", number of the technology)."""
+
+
+class Prior(NamedTuple):
+    """What everything before the window says of its first keyframe and of the border.
+
+    Attributes:
+        keys: its blocks, in order: walks have six numbers, stands three, technologies two.
+        matrix: Kirchhoff matrix, n × n.
+        vector: in deviations from `reference`, n.
+        reference: where it was linearised, n.
+    """
+
+    keys: tuple[Key, ...]
+    matrix: Array
+    vector: Array
+    reference: Array

@@ -1,0 +1,152 @@
+"""Nodes that lie somewhere else than they did, and links that have changed (estimation.md, point 9).
+
+A breadcrumb may be kicked or carried: from some epoch on its readings disagree with its place, and agree with
+another one. A link between two nodes that stay may lose power for good: paper A takes that for a sign of
+fire.
+"""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from estimator.fusion.modes import CAUCHY, Mode, Sought, find_modes
+from estimator.fusion.nodes import NodeState
+from estimator.graph.dense import Array
+from estimator.graph.kernels import Integers
+from estimator.smoothing.rows import RANGE, RSSI
+from estimator.smoothing.solve import Problem, Solved
+
+RECENT_S = 120.0
+READINGS_MIN = 5
+SUSPICION = 6.0
+"""How much worse than usual, in log likelihood, readings are together before another place is looked for."""
+USUAL_COST = 1.0
+GAIN = 12.0
+"""How much better the other place must explain them: odds of 1 to 100,000 for one more place."""
+FAR_M = 1.5
+UNSURE_M = 0.3
+UP_SIGMA_M = 1.0
+CHANGED_DB = 8.0
+CHANGED_SIGMAS = 4.0
+LEAST_SPREAD_DB = 4.0
+BEFORE_S, AFTER_S = 30.0, 20.0
+LINK_READINGS_MIN = 4
+
+
+class Moved(NamedTuple):
+    """A node that lies elsewhere.
+
+    Attributes:
+        name: the node.
+        since_t: the first epoch at which its readings agree with the new place (s).
+        mode: the new place.
+    """
+
+    name: str
+    since_t: float
+    mode: Mode
+
+
+class Changed(NamedTuple):
+    """A link between two nodes that stay, whose power has changed: names, epoch (s), change (dB)."""
+
+    a: str
+    b: str
+    t: float
+    change_db: float
+
+
+def moved_nodes(problem: Problem, solved: Solved) -> list[Moved]:
+    """The standing nodes that the newest readings put elsewhere."""
+    state, rows = problem.layout.state, problem.rows
+    m = len(rows.pairs)
+    kinds = rows.pairs[:, 1]
+    now = float(problem.layout.grid[-1])
+    residual = solved.linear.residual[:m]
+    cost = 0.5 * CAUCHY**2 * np.log1p((residual / rows.sigma[:m] / CAUCHY) ** 2)
+    recent = (rows.pairs[:, 0] > now - RECENT_S) & (kinds <= RSSI)
+    found = []
+    for node in state.nodes.values():
+        if node.mode != "static" or node.role == "anchor":
+            continue
+        mine = np.flatnonzero(recent & ((rows.pairs[:, 2] == node.index) | (rows.pairs[:, 3] == node.index)))
+        if len(mine) < READINGS_MIN:
+            continue
+        mine = mine[np.argsort(rows.pairs[mine, 0], kind="stable")]
+        from_here = np.cumsum((cost[mine] - USUAL_COST)[::-1])[::-1]
+        first = int(np.argmax(from_here[: len(mine) - READINGS_MIN + 1]))
+        if from_here[first] < SUSPICION:
+            continue
+        mode = _elsewhere(problem, solved, node, mine[first:])
+        if mode is not None:
+            found.append(Moved(node.node, float(rows.pairs[mine[first], 0]), mode))
+    return found
+
+
+def _elsewhere(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> Mode | None:
+    """A place that explains the readings `mine` of a node clearly better than the one it has."""
+    rows, layout = problem.rows, problem.layout
+    ranged = rows.pairs[mine, 1] == RANGE
+    kind: Literal["range", "rssi"] = "range" if ranged.sum() >= READINGS_MIN else "rssi"
+    mine = mine[ranged if kind == "range" else ~ranged]
+    sources, counts = np.unique(rows.source[mine], return_counts=True)
+    if not len(sources):
+        return None
+    mine = mine[rows.source[mine] == sources[np.argmax(counts)]]
+    if len(mine) < READINGS_MIN:
+        return None
+    a, b = rows.places(solved.x)
+    here = rows.pairs[mine, 2] == node.index
+    points = np.where(here[:, None], b[mine], a[mine])
+    place = np.where(here[:, None], a[mine], b[mine])[0]
+    key = ("range" if kind == "range" else "rssi", int(rows.source[mine[0]]))
+    start = layout.length * layout.width + layout.technologies[key]
+    sigma = np.hypot(rows.sigma[mine], UNSURE_M) if kind == "range" else rows.sigma[mine]
+    sought = Sought(
+        kind=kind,
+        points=points,
+        value=rows.pairs[mine, 4] - rows.pairs[mine, 7],
+        sigma=sigma,
+        up_m=float(place[2]),
+        up_sigma_m=UP_SIGMA_M,
+        extra=solved.x[start : start + 2],
+        extra_covariance=np.diag([1e-6, 1e-6]),
+    )
+    modes = find_modes(sought)
+    if not modes:
+        return None
+    best = modes[0]
+    off = solved.linear.residual[mine] / sigma
+    before = float((0.5 * CAUCHY**2 * np.log1p((off / CAUCHY) ** 2)).sum())
+    far = float(np.hypot(*(best.position_m - place)[:2])) > max(FAR_M, 2.0 * best.sigma_m)
+    return best if far and before - best.cost > GAIN and best.cost < len(mine) else None
+
+
+def changed_links(problem: Problem) -> list[Changed]:
+    """Links between standing nodes whose power has lastingly changed in the last seconds of the window."""
+    layout, pairs = problem.layout, problem.rows.pairs
+    standing = np.array([*layout.stands, -1.0])
+    now = float(layout.grid[-1])
+    still = np.isin(pairs[:, 2], standing) & np.isin(pairs[:, 3], standing) & (pairs[:, 1] == RSSI)
+    found = []
+    for link in np.unique(pairs[still, 9]).tolist():
+        mine = pairs[still & (pairs[:, 9] == link)]
+        after, before = mine[mine[:, 0] > now - AFTER_S], mine[mine[:, 0] < now - BEFORE_S]
+        if len(after) < LINK_READINGS_MIN or len(before) < LINK_READINGS_MIN:
+            continue
+        change = float(np.median(after[:, 4]) - np.median(before[:, 4]))
+        spread = max(float(np.std(before[:, 4])), LEAST_SPREAD_DB)
+        spread *= float(np.sqrt(1.0 / len(after) + 1.0 / len(before)))
+        if abs(change) > max(CHANGED_DB, CHANGED_SIGMAS * spread):
+            names = [layout.state.owners[int(n)] for n in mine[0, 2:4]]
+            found.append(Changed(names[0], names[1], float(after[0, 0]), change))
+    return found
+
+
+def renumber(pairs: Array, old: int, new: int, since_t: float) -> Array:
+    """The ledger's pairs with a node's new number from an epoch on."""
+    later = pairs[:, 0] >= since_t
+    changed: Array = pairs.copy()
+    for column in (2, 3):
+        changed[later & (pairs[:, column] == old), column] = new
+    return changed

@@ -1,0 +1,81 @@
+"""From a solved window back to the filter: its Kirchhoff matrix of now, and where everyone was."""
+
+import numpy as np
+
+from estimator.fusion.state import FusionState
+from estimator.graph.dense import Array, Indices, factorise, mended, solve
+from estimator.graph.kirchhoff import Kirchhoff
+from estimator.graph.variable import Variable
+from estimator.smoothing.layout import Layout
+from estimator.smoothing.solve import Solved
+from estimator.smoothing.walks import STATES
+
+
+def settle(state: FusionState, layout: Layout, solved: Solved, matrix: Array, vector: Array) -> None:
+    """Put the window's Kirchhoff matrix of now in the place of the filter's."""
+    graph = state.graph
+    columns: dict[Variable, Indices] = {}
+    gone: list[Indices] = []
+    here = np.concatenate(
+        [
+            solved.x[(layout.length - 1) * layout.width : layout.length * layout.width],
+            solved.x[layout.length * layout.width :],
+        ]
+    )
+    for i, walk in enumerate(layout.walks):
+        own = np.arange(STATES * i, STATES * (i + 1))
+        node = state.nodes[walk.node.node]
+        if node.moving:
+            columns[node.position] = own[:3]
+            columns[node.velocity if walk.way is None else node.unit] = own[3:]
+        elif walk.last == layout.length - 1:
+            gone.append(own)
+    for number, start in layout.stands.items():
+        node = state.nodes[state.owners[number]]
+        own = layout.width + np.arange(start, start + 3)
+        if node.index == number and node.mode == "static":
+            columns[node.position] = own
+        else:
+            gone.append(own)
+    for variable in graph.starts:
+        if variable.kind in ("range", "rssi"):
+            kind = variable.kind
+            name = variable.owner if kind == "range" else f"rssi {variable.owner}"
+            columns[variable] = layout.width + np.arange(2) + layout.technologies[(kind, state.source(name))]
+    order = [v for v in graph.starts if v in columns]
+    if len(order) != len(graph.starts):
+        raise ValueError("the window does not hold all that the filter holds")
+    kept = np.concatenate([columns[v] for v in order])
+    left, rest = matrix[np.ix_(kept, kept)], vector[kept]
+    if gone:
+        out = np.concatenate(gone)
+        block = matrix[np.ix_(out, out)]
+        try:
+            cholesky = factorise(block)
+        except ValueError:
+            cholesky = factorise(mended(block))
+        coupling = matrix[np.ix_(out, kept)]
+        through = solve(cholesky, np.column_stack([coupling, vector[out]]))
+        left = left - coupling.T @ through[:, :-1]
+        rest = rest - coupling.T @ through[:, -1]
+    settled = Kirchhoff.of(order, 0.5 * (left + left.T), rest, here[kept])
+    settled.rebase(settled.solve())
+    if not np.isfinite(settled.reference).all():
+        raise ValueError("the window's solution is not finite")
+    state.graph = settled
+
+
+def keep_poses(state: FusionState, layout: Layout, x: Array) -> None:
+    """The solution's keyframes are where the next one starts from."""
+    size = layout.length * layout.width
+    keyframes = x[:size].reshape(layout.length, layout.width)
+    poses = state.ledger.table("poses")
+    parts = [poses[poses[:, 0] < layout.since_t]]
+    for i, walk in enumerate(layout.walks):
+        alive = slice(walk.first, walk.last + 1)
+        states = keyframes[alive, STATES * i : STATES * (i + 1)]
+        told = np.empty((len(states), 9))
+        told[:, 0], told[:, 1], told[:, 2] = layout.times[alive, i], walk.number, float(walk.way is not None)
+        told[:, 3:] = states
+        parts.append(told)
+    state.ledger.replace("poses", np.concatenate(parts))

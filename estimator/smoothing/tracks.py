@@ -1,0 +1,116 @@
+"""A solved window as tracks: a point at each whole second of every node's life."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from estimator.estimate import TrackPoint
+from estimator.fusion.free import free_motion
+from estimator.fusion.introduce import tuple_of, upper_triangle
+from estimator.graph.dense import Array
+from estimator.smoothing.layout import Layout, Walk
+from estimator.smoothing.walks import STATES, led_by
+
+Lifetimes = Mapping[str, tuple[float, float]]
+
+
+def tracks(
+    layout: Layout, x: Array, keyframes: Array, ahead: Array, border: Array, lifetimes: Lifetimes
+) -> dict[str, list[TrackPoint]]:
+    """Every placed node's track.
+
+    Args:
+        layout: of the window.
+        x: its estimate, flat.
+        keyframes: covariance of each keyframe, k × n × n.
+        ahead: covariance of each keyframe with the next, (k − 1) × n × n.
+        border: covariance of the border, s × s.
+        lifetimes: first and last epoch of each node's readings (s).
+    """
+    found: dict[str, list[TrackPoint]] = {}
+    for i, walk in enumerate(layout.walks):
+        found[walk.node.node] = _walked(layout, walk, i, x, (keyframes, ahead), lifetimes)
+    size = layout.length * layout.width
+    stands = layout.state.ledger.table("stands")
+    drops = {int(row[1]): float(row[0]) for row in layout.state.ledger.table("drops")}
+    for row in stands:
+        number, name = int(row[1]), layout.state.owners[int(row[1])]
+        start = layout.stands[number]
+        place = tuple_of(x[size + start : size + start + 3])
+        covariance = upper_triangle(border[start : start + 3, start : start + 3])
+        first, last = lifetimes[name]
+        since = max(drops.get(number, first), first) if name in found or number in drops else first
+        points = [p for p in found.get(name, []) if p.t < since]
+        points += [
+            TrackPoint(t=float(t), position_m=place, covariance_m2=covariance)
+            for t in range(math.ceil(since), math.floor(last) + 1)
+        ]
+        found[name] = points
+    for node in layout.state.nodes.values():
+        if node.role == "base" and node.place_m is not None:
+            first, last = lifetimes[node.node]
+            found[node.node] = [
+                TrackPoint(t=float(t), position_m=node.place_m, covariance_m2=(0.0,) * 6)
+                for t in range(math.ceil(first), math.floor(last) + 1)
+            ]
+    return {name: points for name, points in found.items() if points}
+
+
+def _walked(
+    layout: Layout,
+    walk: Walk,
+    index: int,
+    x: Array,
+    covariances: tuple[Array, Array],
+    lifetimes: Lifetimes,
+) -> list[TrackPoint]:
+    """Points of a moving node: between two keyframes along its way, which is bent to meet the second one."""
+    first, last = lifetimes[walk.node.node]
+    times = layout.times[:, index]
+    seconds = np.arange(math.ceil(first), math.floor(last) + 1, dtype=np.float64)
+    seconds = seconds[seconds >= times[walk.first] - 1e-6]
+    if len(seconds) == 0:
+        return []
+    own = slice(STATES * index, STATES * (index + 1))
+    states = x[: layout.length * layout.width].reshape(layout.length, layout.width)[:, own]
+    at = np.clip(np.searchsorted(layout.grid, seconds, side="right") - 1, walk.first, walk.last)
+    after = np.minimum(at + 1, walk.last)
+    since, until = times[at], np.maximum(times[after], seconds)
+    span = np.maximum(until - since, 1e-9)
+    share = np.clip((seconds - since) / span, 0.0, 1.0)
+    share[after == at] = 0.0
+    places, _ = _led(walk, states[at], since, np.maximum(seconds, since))
+    led_to, noise = _led(walk, states[at], since, until)
+    places += np.where((after > at)[:, None], share[:, None] * (states[after, :3] - led_to), 0.0)
+    part = share[:, None, None]
+    keyframes, ahead = covariances
+    position = keyframes[:, own, own][:, :3, :3]
+    both = np.zeros_like(position[at])
+    between = after > at
+    both[between] = ahead[at[between]][:, own, own][:, :3, :3]
+    apart = position[at] + position[after] - both - both.transpose(0, 2, 1)
+    apart[~between] = 0.0
+    covariance = (1.0 - part) * position[at] + part * position[after] - part * (1.0 - part) * apart
+    beyond = np.where(between, share * (1.0 - share), 1.0)
+    covariance[:, range(3), range(3)] += noise * beyond[:, None]
+    if walk.way is not None:
+        bridged = walk.way.bridged(seconds)
+        covariance[:, range(3), range(3)] += bridged[:, None] * np.array([1.0, 1.0, 0.1])
+    return [
+        TrackPoint(t=t, position_m=tuple_of(p), covariance_m2=upper_triangle(c))
+        for t, p, c in zip(seconds.tolist(), places, covariance, strict=True)
+    ]
+
+
+def _led(walk: Walk, states: Array, since: Array, until: Array) -> tuple[Array, Array]:
+    """Where a node's way leads from states, m × 3 (m), and the variances that it adds, m × 3 (m²)."""
+    durations = until - since
+    if walk.way is not None:
+        parts = walk.way.between(since, until)
+        after, _ = led_by(states, parts[:, :3], parts[:, 3:6], durations)
+        return after[:, :3], parts[:, [6, 6, 7]]
+    moved = {d: free_motion(walk.node.role, d) for d in set(durations.tolist())}
+    led = np.array([moved[d][0][:3] @ s for d, s in zip(durations.tolist(), states, strict=True)])
+    noise = np.array([np.diag(moved[d][1])[:3] for d in durations.tolist()])
+    return led, noise

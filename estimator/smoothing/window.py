@@ -1,0 +1,170 @@
+"""The window: recent keyframes solved again as estimates move, before they are marginalised.
+
+Between two solutions the filter in `estimator.fusion` folds tick after tick into L and b. Each solution of
+the window puts the Kirchhoff matrix of its newest keyframe and of the border in the filter's place, so that
+no reading inside the window stays linearised at an estimate that has turned out to be wrong (estimation.md,
+6).
+"""
+
+import numpy as np
+from msgspec.structs import replace
+
+from estimator.fusion import physics
+from estimator.fusion.introduce import NO_PRIOR_SIGMA_M, place
+from estimator.fusion.state import FusionState
+from estimator.graph.dense import Array
+from estimator.smoothing.extent import (
+    LONGEST_S,
+    SHORTEST_S,
+    STEPS_S,
+    WORK,
+    restart,
+    spacing_s,
+    trim,
+    work,
+)
+from estimator.smoothing.layout import Layout
+from estimator.smoothing.learn import learn
+from estimator.smoothing.moved import changed_links, moved_nodes, renumber
+from estimator.smoothing.rows import Rows
+from estimator.smoothing.settle import keep_poses, settle
+from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.walks import STATES
+
+PERIOD_S = 6.0
+SOONEST_S = 3.0
+YOUNG = 0.03
+"""A window is solved again when it has grown by this much of its length: what is young still bends."""
+BENT_M = 1.0
+CALM = 4.0
+"""Periods after which the window is solved again though nothing has bent it."""
+GONE = 4.0
+"""A window this many times as long as it may be is begun anew."""
+ITERATIONS = 4
+RESTING = 0.1
+"""A window that gains less in log likelihood is solved again soon anyway."""
+TURN_ITERATIONS = 8
+SLACKS_M = (1.0, 0.3)
+FOUND_RAD = 0.15
+
+
+def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
+    """After a tick that ends at `t`: solve the window again where it is due.
+
+    Args:
+        state: the fusion, changed in place.
+        t: end of the tick (s).
+        rarer: how many of its usual periods the window waits where nothing but time has gone by.
+    """
+    if state.begun_t is None:
+        if not len(state.ledger.table("begins")) and not len(state.ledger.table("stands")):
+            return
+        state.begun_t = state.refreshed_t = t
+    turned = any(node.turned for node in state.nodes.values())
+    age = (t - state.refreshed_t) / (rarer * period_s(state))
+    waited = age >= CALM or (age >= 1.0 and state.bent_m > BENT_M)
+    if not (state.due or turned or waited):
+        return
+    state.due, state.refreshed_t, state.bent_m = False, t, 0.0
+    if refresh(state) and state.due:
+        state.due = False
+        refresh(state)
+
+
+def refresh(state: FusionState) -> bool:
+    """Solve the window again, and go on from its solution.
+
+    Returns:
+        False where it has none: the filter goes on as it was.
+    """
+    ledger = state.ledger
+    since = state.window_t
+    if since is None:
+        firsts = [rows[:, 0].min() for rows in (ledger.table("begins"), ledger.table("stands")) if len(rows)]
+        since = state.window_t = float(min(firsts))
+    if state.newest_t - since > GONE * LONGEST_S:
+        restart(state)
+        return False
+    try:
+        layout = Layout(state, since, spacing_s(state))
+        rows = Rows(layout, since, np.inf)
+        rows.learn(state.noise)
+        problem = Problem(layout, rows, state.prior)
+        solved = _best(problem, layout.start())
+        trimmed = trim(problem, solved)
+        left = solved.chain.remainder(layout.length - 1)
+        settle(state, layout, solved, left.matrix, left.vector)
+        found = learn(state, problem, solved)
+        _judge_turns(state, layout, found)
+        _tell_changes(state, problem, solved)
+    except ValueError:
+        return False
+    keep_poses(state, layout, solved.x)
+    if trimmed is not None:
+        state.prior, state.window_t = trimmed
+        ledger.forget(state.window_t, ("pairs", "singles", "drops", "poses"))
+        ledger.forget(state.window_t - STEPS_S, ("steps",))
+    return True
+
+
+def period_s(state: FusionState) -> float:
+    """Time between two solutions (s): short while the window is young, long where it costs much."""
+    span = state.newest_t - (state.newest_t if state.window_t is None else state.window_t)
+    usual = min(max(YOUNG * span, SOONEST_S), PERIOD_S)
+    return usual * max(1.0, SHORTEST_S / spacing_s(state) * work(state) / WORK)
+
+
+def _best(problem: Problem, x: Array) -> Solved:
+    """The solution; where a unit's frame may be turned by any angle, the best of several."""
+    layout = problem.layout
+    free = any(walk.way is None for walk in layout.walks)
+    slacks = SLACKS_M if free else ()
+    best = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING)
+    size = layout.length * layout.width
+    for i, walk in enumerate(layout.walks):
+        if not layout.state.nodes[walk.node.node].turned:
+            continue
+        alive, column = slice(walk.first, walk.last + 1), STATES * i
+        for turn in np.arange(1, physics.TURNS) * (2.0 * np.pi / physics.TURNS):
+            there = best.x.copy()
+            keyframes = there[:size].reshape(layout.length, layout.width)
+            places = keyframes[alive, column : column + 2]
+            middle = places.mean(axis=0)
+            cosine, sine = np.cos(turn), np.sin(turn)
+            keyframes[alive, column : column + 2] = middle + (places - middle) @ np.array(
+                [[cosine, sine], [-sine, cosine]]
+            )
+            keyframes[alive, column + 3] += turn
+            tried = problem.solve(there, SLACKS_M, TURN_ITERATIONS)
+            if tried.cost < best.cost - 1e-3:
+                best = tried
+    return best
+
+
+def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
+    """Branch nodes that lie elsewhere to their new place, and tell of them and of links that have changed."""
+    for link in changed_links(problem):
+        pair = sorted((link.a, link.b))
+        text = f"the link between {pair[0]} and {pair[1]} changed by {link.change_db:+.0f} dB for good"
+        state.say("link_changed", link.t, pair[0], text, once=f"link {pair[0]} {pair[1]}")
+    for moved in moved_nodes(problem, solved):
+        node = state.nodes[moved.name]
+        number = state.number(moved.name)
+        pairs = state.ledger.table("pairs")
+        state.ledger.replace("pairs", renumber(pairs, node.index, number, moved.since_t))
+        state.graph.delete_nodes([node.position])
+        branch = replace(node, mode="undecided", index=number)
+        wide = (NO_PRIOR_SIGMA_M, NO_PRIOR_SIGMA_M, physics.UNDECIDED_UP_SIGMA_M)
+        place(state, branch, moved.since_t, moved.mode.position_m, wide)
+        text = f"{moved.name} lies elsewhere than it did: it was kicked or carried"
+        state.say("node_moved", state.newest_t, moved.name, text)
+        state.due = True
+
+
+def _judge_turns(state: FusionState, layout: Layout, found: Array) -> None:
+    """A unit whose heading has been found is not tried all round any more."""
+    for i, walk in enumerate(layout.walks):
+        node = state.nodes[walk.node.node]
+        sigma = float(np.sqrt(max(found[walk.last, STATES * i + 3, STATES * i + 3], 0.0)))
+        if node.turned and sigma < FOUND_RAD:
+            state.nodes[node.node] = replace(node, turned=False)

@@ -1,0 +1,193 @@
+"""What is eliminated leaves what it knew behind: marginals of chains and of windows against the whole."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from estimator.fusion.prior import Key, Prior
+from estimator.graph.dense import Array
+from estimator.measurements import AnyReading
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.node import Node
+from estimator.measurements.position import Position
+from estimator.smoothing.chain import Chain
+from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.walks import STATES
+from tests.estimator.smoothing.windows import at_rest, dense, fused, problem_of
+from tests.estimator.walks import two_responders
+
+NO_OUTLIERS = 1e-200
+SHAPES = [(2, 3, 2), (6, 4, 3), (60, 6, 5), (5, 3, 0)]
+
+
+def random_chain(length: int, width: int, border: int, seed: int) -> Chain:
+    """A chain with well-conditioned random contents."""
+    chance = np.random.default_rng(seed)
+    chain = Chain(length, width, border)
+    for j in range(length):
+        count = width * (2 if j + 1 < length else 1) + border
+        rows = chance.normal(0.0, 1.0, (3 * count, count)) / np.sqrt(count)
+        each = rows.T @ rows + 0.1 * np.eye(count)
+        own, last = slice(0, width), slice(count - border, count)
+        chain.diagonal[j] += each[own, own]
+        chain.border[j] += each[own, last]
+        chain.corner += each[last, last]
+        if j + 1 < length:
+            after = slice(width, 2 * width)
+            chain.diagonal[j + 1] += each[after, after]
+            chain.border[j + 1] += each[after, last]
+            chain.link[j] = each[after, own]
+    chain.gradient[:] = chance.normal(0.0, 1.0, (length, width))
+    chain.corner_gradient[:] = chance.normal(0.0, 1.0, border)
+    return chain
+
+
+def assert_alike(found: NDArray[Any], expected: NDArray[Any], tolerance: float) -> None:
+    assert found.shape == expected.shape
+    assert np.abs(found - expected).max(initial=0.0) <= tolerance * np.abs(expected).max(initial=1e-300)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_solving_what_a_remainder_leaves_equals_solving_whole(shape: tuple[int, int, int]) -> None:
+    length, width, border = shape
+    whole, gradient = dense(random_chain(*shape, seed=length))
+    expected = np.linalg.solve(whole, gradient)
+    for keyframe in sorted({0, 1, length // 2, length - 1}):
+        chain = random_chain(*shape, seed=length)
+        left = chain.remainder(keyframe)
+        rest = Chain(length - keyframe, width, border)
+        rest.diagonal[:], rest.link[:] = chain.diagonal[keyframe:], chain.link[keyframe:]
+        rest.border[:], rest.gradient[:] = chain.border[keyframe:], chain.gradient[keyframe:]
+        rest.diagonal[0], rest.border[0] = left.matrix[:width, :width], left.matrix[:width, width:]
+        rest.corner[:], rest.gradient[0] = left.matrix[width:, width:], left.vector[:width]
+        rest.corner_gradient[:] = left.vector[width:]
+        assert_alike(np.concatenate([a.ravel() for a in rest.solve()]), expected[keyframe * width :], 1e-9)
+        on = np.concatenate([a.ravel() for a in chain.solve()])
+        assert_alike(on, expected, 1e-9)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_remainder_at_the_end_is_the_marginal_of_the_newest_keyframe_and_the_border(
+    shape: tuple[int, int, int],
+) -> None:
+    length, width, _ = shape
+    whole, gradient = dense(random_chain(*shape, seed=length))
+    kept = slice((length - 1) * width, None)
+    left = random_chain(*shape, seed=length).remainder(length - 1)
+    assert_alike(np.linalg.inv(left.matrix), np.linalg.inv(whole)[kept, kept], 1e-9)
+    assert_alike(np.linalg.solve(left.matrix, left.vector), np.linalg.solve(whole, gradient)[kept], 1e-9)
+
+
+@pytest.mark.parametrize("shape", [*SHAPES, (1, 3, 2), (1, 4, 0)])
+def test_covariances_are_blocks_of_the_dense_inverse(shape: tuple[int, int, int]) -> None:
+    length, width, _ = shape
+    chain = random_chain(*shape, seed=length)
+    inverse = np.linalg.inv(dense(chain)[0])
+    chain.solve()
+    keyframes, ahead, border = chain.covariances()
+    for j in range(length):
+        own, after = slice(j * width, (j + 1) * width), slice((j + 1) * width, (j + 2) * width)
+        assert_alike(keyframes[j], inverse[own, own], 1e-9)
+        if j + 1 < length:
+            assert_alike(ahead[j], inverse[own, after], 1e-9)
+    assert_alike(border, inverse[length * width :, length * width :], 1e-9)
+
+
+def prior_at(problem: Problem, solved: Solved, cut: int) -> Prior:
+    """What the keyframes before one say of it and of the border."""
+    layout = problem.layout
+    chain = problem.assemble(solved.x, solved.linear, solved.weighted, solved.motions, cut)
+    left = chain.remainder(cut)
+    keys: list[Key] = []
+    at: list[int] = []
+    for i, walk in enumerate(layout.walks):
+        if walk.first <= cut <= walk.last:
+            keys.append(("walk", walk.number))
+            at += range(STATES * i, STATES * (i + 1))
+    for number, start in layout.stands.items():
+        keys.append(("stand", number))
+        at += range(layout.width + start, layout.width + start + 3)
+    for key, start in layout.technologies.items():
+        keys.append(key)
+        at += range(layout.width + start, layout.width + start + 2)
+    reference = from_cut(problem, solved.x, cut)[np.r_[: layout.width, -layout.border : 0]][at]
+    return Prior(tuple(keys), left.matrix[np.ix_(at, at)], left.vector[at], reference)
+
+
+def from_cut(problem: Problem, x: Array, cut: int) -> Array:
+    """The estimate without the keyframes before one."""
+    return x[cut * problem.layout.width :]
+
+
+def assert_same_from_cut(whole: Problem, at: Solved, cut: int, window: Problem, again: Solved) -> None:
+    """Estimates and covariances after the cut, of both Problems and one more step of theirs, are the same."""
+    assert window.layout.grid == pytest.approx(whole.layout.grid[cut:])
+    steps, fixed = at.chain.solve()
+    expected = from_cut(whole, at.x + np.concatenate([steps.ravel(), fixed]), cut)
+    steps, fixed = again.chain.solve()
+    reached = again.x + np.concatenate([steps.ravel(), fixed])
+    found, right = again.chain.covariances(), at.chain.covariances()
+    sigma = np.sqrt(np.diagonal(right[0], axis1=1, axis2=2)[cut:])
+    lasting = np.sqrt(np.diagonal(right[2]))
+    assert np.abs((reached - expected) / np.concatenate([sigma.ravel(), lasting])).max() < 1e-6
+    assert np.abs((found[0] - right[0][cut:]) / sigma[:, :, None] / sigma[:, None]).max() < 1e-6
+    assert np.abs((found[1] - right[1][cut:]) / sigma[:-1, :, None] / sigma[1:, None]).max() < 1e-6
+    assert np.abs((found[2] - right[2]) / lasting[:, None] / lasting).max(initial=0.0) < 1e-6
+
+
+def window_from(whole: Problem, at: Solved, cut: int) -> Problem:
+    """The window from a keyframe on, with what the keyframes before it leave."""
+    rest = problem_of(whole.layout.state, float(whole.layout.grid[cut]))
+    return Problem(rest.layout, rest.rows, prior_at(whole, at, cut))
+
+
+def fixes(node: str, seconds: int, sigma_m: float, seed: int) -> list[AnyReading]:
+    """A fix each second, of somebody who walks round a circle."""
+    chance = np.random.default_rng(seed)
+    found: list[AnyReading] = []
+    for second in range(seconds + 1):
+        turn = second / 12.0
+        there = 12.0 * np.array([np.sin(turn), 1.0 - np.cos(turn), 0.0])
+        e, n, u = (there + chance.normal(0.0, sigma_m, 3)).tolist()
+        found.append(Position(t=float(second), node=node, position_m=(e, n, u), sigma_m=(sigma_m,) * 3))
+    return found
+
+
+@pytest.mark.parametrize("cut", [1, 17, 50])
+def test_a_linear_window_after_its_prior_says_what_the_whole_incident_says(cut: int) -> None:
+    """Two responders without PDR and fixes only: everything is linear, and the start does not matter."""
+    whole = problem_of(fused([*fixes("ff1", 60, 0.5, 1), *fixes("ff2", 60, 2.0, 2)]))
+    assert whole.layout.width == 2 * STATES
+    whole.rows.noise[:, 0] = NO_OUTLIERS
+    elsewhere = np.random.default_rng(cut).normal(0.0, 10.0, len(whole.layout.start()))
+    at = at_rest(whole, elsewhere)
+    window = window_from(whole, at, cut)
+    window.rows.noise[:, 0] = NO_OUTLIERS
+    again = at_rest(window, from_cut(whole, elsewhere, cut))
+    assert_same_from_cut(whole, at, cut, window, again)
+
+
+@pytest.mark.parametrize("cut", [1, 9, 25])
+def test_the_same_for_a_unit_whose_heading_is_known(cut: int) -> None:
+    walk: list[AnyReading] = [Node(t=0.0, node="ff1", role="responder", heading_sigma_rad=0.001)]
+    walk += fixes("ff1", 60, 0.5, 3)
+    for second in range(1, 61):
+        e, n = np.cos((second - 0.5) / 12.0), np.sin((second - 0.5) / 12.0)
+        walk.append(Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(e, n, 0.0)))
+    whole = problem_of(fused(walk))
+    at = at_rest(whole, whole.layout.start())
+    window = window_from(whole, at, cut)
+    again = at_rest(window, window.layout.start())
+    assert_same_from_cut(whole, at, cut, window, again)
+
+
+@pytest.mark.parametrize("cut", [1, 5, 30, 58])
+def test_among_beacons_ranges_and_breadcrumbs_a_window_takes_the_step_of_the_whole_incident(cut: int) -> None:
+    """Readings of all kinds, outliers included, linearised at the same estimate."""
+    whole = problem_of(fused(two_responders(60)))
+    at = whole.solve(whole.solve(whole.layout.start()).x, iterations=0)
+    window = window_from(whole, at, cut)
+    again = window.solve(from_cut(whole, at.x, cut), iterations=0)
+    assert_same_from_cut(whole, at, cut, window, again)
