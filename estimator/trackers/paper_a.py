@@ -1,0 +1,187 @@
+"""Paper A's system as written: a Kirchhoff matrix of positions, PDR displacements and ranges from RSSI.
+
+Nothing is added to it: no heading, bias, scale or path loss is a state, no noise is robust, nothing is
+linearised again, and its covariance is L⁻¹ as it stands (eq. 5). The parts are in `estimator.paper_a`.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Self
+
+import msgspec
+import numpy as np
+
+from estimator.estimate import NodeEstimate, Notice, Relative
+from estimator.graph.dense import Array
+from estimator.graph.variable import Variable
+from estimator.measurements import AnyReading
+from estimator.measurements.altitude import Altitude, Pressure
+from estimator.measurements.bearing import Bearing
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.drop import Drop
+from estimator.measurements.imu import Imu
+from estimator.measurements.node import Node
+from estimator.measurements.position import Position, east_north_up
+from estimator.measurements.range import Range
+from estimator.measurements.retire import Retire
+from estimator.measurements.rssi import Rssi
+from estimator.measurements.status import Alarm, Status
+from estimator.paper_a import edges, lifecycle
+from estimator.paper_a.network import Network
+from estimator.paper_a.node import GraphNode
+from estimator.paper_a.state import PaperAState
+from estimator.trackers.base import TrackerSettings
+
+VERSION = 1
+ORDER: dict[type, int] = {Node: 0, Displacement: 1, Position: 2, Drop: 3, Range: 4, Rssi: 4, Retire: 6}
+"""Of one epoch, first who is there and where it went, then what was measured there."""
+
+_encode = msgspec.msgpack.Encoder().encode
+_ArrayRecord = tuple[list[int], bytes]
+
+
+class _Snapshot(msgspec.Struct, frozen=True, array_like=True):
+    version: int
+    settings: TrackerSettings
+    vertices: list[Variable]
+    storage: tuple[_ArrayRecord, _ArrayRecord, _ArrayRecord]
+    nodes: list[GraphNode]
+    counts: dict[str, int]
+    notices: list[Notice]
+    said: list[str]
+
+
+class _Version(msgspec.Struct, frozen=True, array_like=True):
+    version: int
+
+
+class PaperATracker:
+    """Folds readings into paper A's network; see `estimator.trackers.base.Tracker`.
+
+    The paper has no lag: a state is deleted as soon as its successor is there. Readings of one batch are put
+    in order; one that comes after its node has moved on is counted as too late.
+    """
+
+    def __init__(self, settings: TrackerSettings | None = None) -> None:
+        self.settings = settings or TrackerSettings()
+        self._state = PaperAState()
+        self._covariance: Array | None = None
+
+    def fold(self, readings: Sequence[AnyReading]) -> None:
+        """Fold readings, those of one call in order of their epochs."""
+        self._covariance = None
+        for reading in sorted(readings, key=lambda r: (r.t, ORDER.get(type(r), 5), _encode(r))):
+            self._state.counts["received"] += 1
+            self._take(reading)
+
+    def _take(self, reading: AnyReading) -> None:
+        state = self._state
+        match reading:
+            case Node():
+                lifecycle.introduce(state, reading)
+            case Displacement():
+                lifecycle.displace(state, reading)
+            case Drop():
+                lifecycle.drop(state, reading)
+            case Range() | Rssi():
+                edges.pair(state, reading)
+            case Position():
+                self._fix(reading)
+            case Retire():
+                lifecycle.retire(state, reading)
+            case Status() | Alarm():
+                state.counts["not_fused"] += 1
+            case Imu() | Bearing() | Altitude() | Pressure():
+                name = reading.a if isinstance(reading, Bearing) else reading.node
+                state.node_of(name, "responder", reading.t)
+                text = f"paper A's system has no place for {type(reading).__name__.lower()} readings"
+                state.refuse("not_fused", reading.t, name, text)
+
+    def _fix(self, reading: Position) -> None:
+        place_m, origin = reading.position_m, self.settings.origin_wgs84
+        if reading.wgs84 is not None and origin is not None:
+            place_m = east_north_up(reading.wgs84, origin)
+        if place_m is None:
+            self._state.node_of(reading.node, "responder", reading.t)
+            text = "the incident has no WGS84 origin: fixes in WGS84 cannot be fused"
+            self._state.refuse("no_origin", reading.t, reading.node, text)
+            return
+        edges.fix(self._state, reading, place_m)
+
+    def _sigma(self) -> Array:
+        """Σ of all vertices, n × n (m²)."""
+        if self._covariance is None:
+            self._covariance = self._state.network.covariance()
+        return self._covariance
+
+    def estimates(self) -> list[NodeEstimate]:
+        """Every node ever introduced, in order of introduction."""
+        return self._state.estimates(self._sigma())
+
+    def relative(self, a: str, b: str) -> Relative | None:
+        """Where `b` is relative to `a`, from their joint covariance; None where either is undecided.
+
+        Raises:
+            KeyError: a node is not known.
+        """
+        return self._state.relative(self._sigma(), a, b)
+
+    def take_notices(self) -> list[Notice]:
+        """What was noticed since the last call."""
+        taken, self._state.notices = self._state.notices, []
+        return taken
+
+    def counts(self) -> Mapping[str, int]:
+        """How many readings were received, fused, not fused, dropped as outliers, and too late."""
+        return dict(self._state.counts)
+
+    def snapshot(self) -> bytes:
+        """The whole state, exact to the last bit."""
+        state = self._state
+        matrix, vector, reference = state.network.graph.storage()
+        return _encode(
+            _Snapshot(
+                VERSION,
+                self.settings,
+                list(state.network.graph.starts),
+                (_record(matrix), _record(vector), _record(reference)),
+                list(state.nodes.values()),
+                state.counts,
+                state.notices,
+                list(state.said),
+            )
+        )
+
+    @classmethod
+    def restore(cls, state: bytes) -> Self:
+        """A tracker that goes on where `snapshot` was taken.
+
+        Raises:
+            ValueError: `state` was written by another version, or is no snapshot.
+        """
+        try:
+            version = msgspec.msgpack.decode(state, type=_Version).version
+            if version != VERSION:
+                raise ValueError(
+                    f"the snapshot is of version {version}, this tracker reads {VERSION}: fold the log anew"
+                )
+            snapshot = msgspec.msgpack.decode(state, type=_Snapshot)
+        except msgspec.DecodeError as error:
+            raise ValueError(f"this is no snapshot of paper A's tracker: {error}") from error
+        tracker = cls(snapshot.settings)
+        matrix, vector, reference = (_array(record) for record in snapshot.storage)
+        restored = tracker._state
+        restored.network = Network.of(snapshot.vertices, (matrix, vector, reference))
+        restored.nodes = {node.node: node for node in snapshot.nodes}
+        restored.counts, restored.notices = snapshot.counts, snapshot.notices
+        restored.said = dict.fromkeys(snapshot.said)
+        return tracker
+
+
+def _record(array: Array) -> _ArrayRecord:
+    return list(array.shape), array.tobytes()
+
+
+def _array(record: _ArrayRecord) -> Array:
+    shape, content = record
+    array: Array = np.frombuffer(content, dtype=np.float64).reshape(shape).copy()
+    return array
