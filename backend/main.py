@@ -24,6 +24,7 @@ from backend.log.read import SqlLogReader
 from backend.replay.socket import replay_router
 from backend.screen_files import Screen
 from backend.settings import Settings
+from backend.tracking.evidence_routes import evidence_router
 from backend.tracking.routes import tracking_router
 from backend.tracking.smoothing import Smoothing
 
@@ -86,6 +87,7 @@ def build_app(settings: Settings, *, token: str | None, link: socket.socket, lin
         incidents_router(incidents),
         log_router(reader, incidents),
         tracking_router(incidents, reader, hub, workers, smoothing),
+        evidence_router(incidents, smoothing),
         live_router(hub),
         replay_router(incidents, reader),
         session_router(token),

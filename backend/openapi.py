@@ -8,6 +8,7 @@ from fastapi.openapi.utils import get_openapi
 from backend.errors import PROBLEM_MEDIA_TYPE
 from backend.ingest import openapi as telemetry
 from backend.live.frame import message_schemas
+from backend.tracking.evidence_routes import evidence_schemas
 
 PROBLEM_SCHEMA: dict[str, Any] = {
     "type": "object",
@@ -72,6 +73,7 @@ def complete(document: dict[str, Any]) -> dict[str, Any]:
     schemas["Problem"] = PROBLEM_SCHEMA
     schemas.update(telemetry.openapi_schemas())
     schemas.update(message_schemas())
+    schemas.update(evidence_schemas())
     for path, operations in document["paths"].items():
         if path.startswith("/api/"):
             statuses = OF_EVERY_ROUTE + (OF_ONE_INCIDENT if "{incident}" in path else ())

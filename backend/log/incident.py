@@ -8,7 +8,7 @@ Clock = Literal["live", "recorded"]
 """live: ages count on the server's clock; recorded: the newest reading is now."""
 
 State = Literal["active", "closed"]
-TrackerName = Literal["kirchhoff"]
+TrackerName = Literal["kirchhoff", "paper-a"]
 
 # NUL and other control characters have no place in a name, and Postgres cannot store NUL.
 Name = Annotated[str, Field(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$")]

@@ -8,6 +8,7 @@ from backend.tracking.heads import Head
 from backend.tracking.reading import read_block
 from estimator import trackers
 from estimator.estimate import Relative, TrackPoint
+from estimator.evidence import Advice, Evidence
 from estimator.measurements import AnyReading
 
 Smoothed = dict[str, list[TrackPoint]]
@@ -23,12 +24,67 @@ def smooth_log(database_url: str, head: Head) -> Smoothed:
     Raises:
         LogUnreadable: the database failed.
     """
+    return trackers.smoother(head.tracker, head.settings).smooth(_whole_log(database_url, head))
+
+
+def evidence_of_log(database_url: str, head: Head, node: str, t: float | None) -> Evidence | None:
+    """What holds a node's fix at a moment, with everything that the whole log says of epochs up to it.
+
+    An entry that came later than `t` but tells of epochs before it counts; readings of later epochs do not.
+
+    Args:
+        database_url: SQLAlchemy URL of the log.
+        head: the incident; entries after its `last_seq` are left out.
+        node: the node.
+        t: the moment, Unix seconds; None: the newest epoch.
+
+    Returns:
+        The evidence; None where the node's position is not decided at that time.
+
+    Raises:
+        NotFound: no reading up to that moment names the node.
+        LogUnreadable: the database failed.
+    """
+    readings = [reading for reading in _whole_log(database_url, head) if t is None or reading.t <= t]
+    try:
+        return trackers.evidence(head.tracker, head.settings, readings, node)
+    except KeyError as error:
+        raise _not_named(node, t) from error
+
+
+def advice_of_log(database_url: str, head: Head, node: str) -> Advice | None:
+    """What would make a node's newest position surer, from the whole log.
+
+    Args:
+        database_url: SQLAlchemy URL of the log.
+        head: the incident; entries after its `last_seq` are left out.
+        node: the node.
+
+    Returns:
+        The advice; None where the node's position is not decided.
+
+    Raises:
+        NotFound: no reading names the node.
+        LogUnreadable: the database failed.
+    """
+    readings = _whole_log(database_url, head)
+    try:
+        return trackers.advice(head.tracker, head.settings, readings, node)
+    except KeyError as error:
+        raise _not_named(node, None) from error
+
+
+def _not_named(node: str, t: float | None) -> NotFound:
+    when = "yet" if t is None else f"up to t = {t:.3f}"
+    return NotFound(f"No reading of this incident has named {node!r} {when}.")
+
+
+def _whole_log(database_url: str, head: Head) -> list[AnyReading]:
     engine = make_engine(database_url)
     try:
-        readings = _readings(SqlLogReader(engine), head)
+        return _readings(SqlLogReader(engine), head)
     finally:
         engine.dispose()
-    return trackers.smoother(head.tracker, head.settings).smooth(readings)
 
 
 def _readings(reader: SqlLogReader, head: Head) -> list[AnyReading]:

@@ -43,7 +43,7 @@ def tracking_router(
     """
     router = APIRouter(prefix="/api/v1/incidents/{incident}", tags=["picture"])
 
-    @router.get("/frame", operation_id="get_frame", responses=_answer("Frame", 404, 503, 504))
+    @router.get("/frame", operation_id="get_frame", responses=answers_with("Frame", 404, 503, 504))
     async def frame(
         incident: str,
         t: Moment = None,
@@ -60,13 +60,15 @@ def tracking_router(
                 f"Log entry {min_seq} was not folded within {timeout_s:g} s; the newest one is {channel.seq}."
             )
         if t is None or t >= channel.now(time.time()):
-            return _json(channel.frame(time.time()))
+            return as_json(channel.frame(time.time()))
         await hub.stored(channel, t)
         row = await asyncio.to_thread(row_at, reader, channel.incident, t)
-        return _json(frame_of(row, channel.incident, t))
+        return as_json(frame_of(row, channel.incident, t))
 
     @router.get(
-        "/relative", operation_id="get_relative", responses=_answer("RelativePosition", 404, 409, 503, 504)
+        "/relative",
+        operation_id="get_relative",
+        responses=answers_with("RelativePosition", 404, 409, 503, 504),
     )
     async def relative(incident: str, a: NodeName, b: NodeName) -> Response:
         """Where node `b` is relative to node `a`, from their joint covariance."""
@@ -82,12 +84,14 @@ def tracking_router(
             found = await smoothing.relative(head_of(known), a, b)
             if found is None:
                 raise Conflict("The position of one of them is not decided yet.")
-            return _json(relative_position(found))
+            return as_json(relative_position(found))
         if answer.delta_m is None or answer.covariance_m2 is None:
             raise NotFound(answer.detail) if answer.unknown else Conflict(answer.detail)
-        return _json(relative_position(Relative(delta_m=answer.delta_m, covariance_m2=answer.covariance_m2)))
+        return as_json(
+            relative_position(Relative(delta_m=answer.delta_m, covariance_m2=answer.covariance_m2))
+        )
 
-    @router.get("/tracks", operation_id="get_tracks", responses=_answer("Tracks", 404, 503, 504))
+    @router.get("/tracks", operation_id="get_tracks", responses=answers_with("Tracks", 404, 503, 504))
     async def tracks(
         incident: str,
         node: Annotated[str | None, Query(min_length=1, max_length=64)] = None,
@@ -104,10 +108,10 @@ def tracking_router(
             if channel.record.t is not None and channel.record.t.is_integer():
                 newest = int(channel.record.t), channel.record
             shown = await asyncio.to_thread(live_tracks, reader, incident, node, start, to, step, newest)
-            return _json(shown)
+            return as_json(shown)
         smoothed = await smoothing.smoothed(head_of(channel.incident))
         chosen = smoothed if node is None else {name: smoothed[name] for name in smoothed if name == node}
-        return _json(_tracks(chosen, start, to, step))
+        return as_json(_tracks(chosen, start, to, step))
 
     return router
 
@@ -120,8 +124,13 @@ REFUSALS = {
 }
 
 
-def _answer(schema: str, *refusals: int) -> dict[int | str, dict[str, object]]:
-    """The answer and the refusals of a route, for the OpenAPI document."""
+def answers_with(schema: str, *refusals: int) -> dict[int | str, dict[str, object]]:
+    """The answer and the refusals of a route, for the OpenAPI document.
+
+    Args:
+        schema: name of the answer's schema.
+        refusals: their statuses.
+    """
     content = {"application/json": {"schema": {"$ref": f"#/components/schemas/{schema}"}}}
     problem = {PROBLEM_MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
     responses: dict[int | str, dict[str, object]] = {200: {"content": content, "description": "OK"}}
@@ -130,7 +139,8 @@ def _answer(schema: str, *refusals: int) -> dict[int | str, dict[str, object]]:
     return responses
 
 
-def _json(answer: msgspec.Struct) -> Response:
+def as_json(answer: msgspec.Struct) -> Response:
+    """An answer as JSON."""
     return Response(msgspec.json.encode(answer), media_type="application/json")
 
 

@@ -5,24 +5,79 @@ import multiprocessing
 import os
 import threading
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine, Hashable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from typing import ParamSpec, TypeVar
+from typing import Any, Generic, ParamSpec, TypeVar
 
 from backend.errors import TooSlow, Unavailable
-from backend.tracking.aside import Smoothed, relative_from_state, smooth_log
+from backend.tracking.aside import Smoothed, advice_of_log, evidence_of_log, relative_from_state, smooth_log
 from backend.tracking.heads import Head
 from estimator.estimate import Relative
+from estimator.evidence import Advice, Evidence
+from estimator.graph.warm import warm_up
 
 KEPT = 8
 """Smoothed incidents that are kept: a reviewer goes back and forth between a few."""
 
+EXPLAINED = 32
+"""Answers about single nodes that are kept: they are small, and some responders are looked at together."""
+
 SMOOTH_WITHIN_S = 60.0
+EXPLAIN_WITHIN_S = 60.0
 RELATIVE_WITHIN_S = 30.0
 
 P = ParamSpec("P")
 T = TypeVar("T")
+
+
+class Kept(Generic[T]):
+    """Sums that are done or under way, by what was asked; asking twice for the same one costs once.
+
+    Args:
+        most: as many are kept, those asked for most recently; older ones are given up.
+    """
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._jobs: OrderedDict[Hashable, asyncio.Task[T]] = OrderedDict()
+
+    async def get(
+        self, key: Hashable, begin: Callable[[], Coroutine[Any, Any, T]], within_s: float, doing: str
+    ) -> T:
+        """What a sum gives.
+
+        Args:
+            key: what is asked.
+            begin: begins the sum, where it is neither done nor under way, or has failed.
+            within_s: as long is it waited for (s).
+            doing: what is done, as the beginning of a sentence.
+
+        Raises:
+            TooSlow: it takes long, and goes on; or too much else was asked for since.
+        """
+        job = self._jobs.get(key)
+        if job is None or (job.done() and (job.cancelled() or job.exception() is not None)):
+            job = self._jobs[key] = asyncio.create_task(begin())
+        self._jobs.move_to_end(key)
+        while len(self._jobs) > self._most:
+            _, oldest = self._jobs.popitem(last=False)
+            oldest.cancel()
+        try:
+            return await asyncio.wait_for(asyncio.shield(job), within_s)
+        except TimeoutError:
+            raise TooSlow(
+                f"{doing} takes longer than {within_s:g} s; it goes on: ask again in a minute."
+            ) from None
+        except asyncio.CancelledError:
+            if not job.cancelled():
+                raise  # it is the request that was given up
+            raise TooSlow("Other sums are in the way: ask again in a minute.") from None
+
+    def cancel(self) -> None:
+        """Give up what is under way."""
+        for job in self._jobs.values():
+            job.cancel()
 
 
 class Smoothing:
@@ -35,7 +90,9 @@ class Smoothing:
     def __init__(self, database_url: str) -> None:
         self._url = database_url
         self._pool: ProcessPoolExecutor | None = None
-        self._jobs: OrderedDict[tuple[str, int, object], asyncio.Task[Smoothed]] = OrderedDict()
+        self._tracks: Kept[Smoothed] = Kept(KEPT)
+        self._evidence: Kept[Evidence | None] = Kept(EXPLAINED)
+        self._advice: Kept[Advice | None] = Kept(EXPLAINED)
 
     async def smoothed(self, head: Head) -> Smoothed:
         """The smoothed tracks of an incident with everything known now.
@@ -48,19 +105,53 @@ class Smoothing:
             Unavailable: the process that does it ended.
         """
         key = (head.incident, head.last_seq, head.settings)
-        job = self._jobs.get(key)
-        if job is None or (job.done() and (job.cancelled() or job.exception() is not None)):
-            job = self._jobs[key] = asyncio.create_task(self._aside(smooth_log, self._url, head))
-        self._jobs.move_to_end(key)
-        while len(self._jobs) > KEPT:
-            _, oldest = self._jobs.popitem(last=False)
-            oldest.cancel()
-        try:
-            return await asyncio.wait_for(asyncio.shield(job), SMOOTH_WITHIN_S)
-        except TimeoutError:
-            raise TooSlow(
-                f"Smoothing takes longer than {SMOOTH_WITHIN_S:g} s; it goes on: ask again in a minute."
-            ) from None
+        return await self._tracks.get(
+            key, lambda: self._aside(smooth_log, self._url, head), SMOOTH_WITHIN_S, "Smoothing"
+        )
+
+    async def evidence(self, head: Head, node: str, t: float | None) -> Evidence | None:
+        """What holds a node's fix at a moment; None where its position is not decided then.
+
+        It is what the whole log says of everything up to `t`: an entry that came later than `t` but tells of
+        epochs before it counts.
+
+        Args:
+            head: the incident, its newest log entry and its estimator's settings.
+            node: the node.
+            t: the moment, Unix seconds; None: the newest epoch.
+
+        Raises:
+            NotFound: no reading up to that moment names the node.
+            TooSlow: it takes long, or other work is in the way.
+            Unavailable: the process that does it ended.
+        """
+        key = (head.incident, head.last_seq, head.settings, node, t)
+        return await self._evidence.get(
+            key,
+            lambda: self._aside(evidence_of_log, self._url, head, node, t),
+            EXPLAIN_WITHIN_S,
+            "Weighing the measurements",
+        )
+
+    async def advice(self, head: Head, node: str) -> Advice | None:
+        """What would make a node's newest position surer; None where it is not decided.
+
+        Args:
+            head: the incident, its newest log entry and its estimator's settings.
+            node: the node.
+
+        Raises:
+            NotFound: no reading names the node.
+            TooSlow: it takes long, or other work is in the way.
+            Unavailable: the process that does it ended.
+        """
+        key = (head.incident, head.last_seq, head.settings, node)
+        return await self._advice.get(
+            key,
+            lambda: self._aside(advice_of_log, self._url, head, node),
+            EXPLAIN_WITHIN_S,
+            "Weighing what could be done",
+        )
 
     async def relative(self, head: Head, a: str, b: str) -> Relative | None:
         """Where `b` is relative to `a` after the newest stored state; None where either is undecided.
@@ -79,8 +170,9 @@ class Smoothing:
 
     def close(self) -> None:
         """End the process."""
-        for job in self._jobs.values():
-            job.cancel()
+        self._tracks.cancel()
+        self._evidence.cancel()
+        self._advice.cancel()
         if self._pool is not None:
             for process in self._pool._processes.values():  # noqa: SLF001 - shutdown() would wait for the work
                 process.terminate()
@@ -104,6 +196,7 @@ class Smoothing:
 def _begin_aside() -> None:
     """Yield to telemetry, and end with the web process, however suddenly that ends."""
     os.nice(10)
+    warm_up()
     parent = multiprocessing.parent_process()
 
     def watch() -> None:

@@ -16,6 +16,7 @@ from backend.log.engine import make_engine, writing
 from backend.log.read import SqlLogReader
 from backend.tracking.follower import Follower
 from backend.tracking.heads import Head, heads
+from estimator.graph.warm import warm_up
 
 POLL_S = 0.5
 """The log is looked at so often even if no wake-up comes: the link may be down."""
@@ -70,6 +71,8 @@ class Worker:
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, self._stop.set)
         self._link.start()
+        # The estimator thread takes incidents up only after this: its compiled loops are loaded, or made.
+        self._compute.submit(warm_up)
         chores = [asyncio.create_task(chore()) for chore in (self._poll, self._renew, self._listen)]
         stopped = asyncio.create_task(self._stop.wait())
         # A chore never ends by itself: if one does, it is by a defect, and the supervisor starts us again.

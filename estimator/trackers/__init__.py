@@ -1,11 +1,20 @@
 """Trackers: the interface in `base`, and one file an estimator; here they are found by name."""
 
+from collections.abc import Sequence
+
+from estimator.evidence import Advice, Evidence
+from estimator.measurements import AnyReading
 from estimator.trackers.base import Smoother, Tracker, TrackerSettings
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from estimator.trackers.paper_a import PaperATracker
 
-TRACKERS: dict[str, type[KirchhoffTracker]] = {"kirchhoff": KirchhoffTracker}
-SMOOTHERS: dict[str, type[BatchSmoother]] = {"kirchhoff": BatchSmoother}
+TRACKERS: dict[str, type[KirchhoffTracker] | type[PaperATracker]] = {
+    "kirchhoff": KirchhoffTracker,
+    "paper-a": PaperATracker,
+}
+SMOOTHERS: dict[str, type[BatchSmoother]] = {"kirchhoff": BatchSmoother, "paper-a": BatchSmoother}
+"""Paper A has no smoother of its own: what is known in the end does not depend on what was shown."""
 
 
 def create(name: str, settings: TrackerSettings) -> Tracker:
@@ -34,3 +43,23 @@ def smoother(name: str, settings: TrackerSettings) -> Smoother:
         KeyError: there is none of that name.
     """
     return SMOOTHERS[name](settings)
+
+
+def evidence(
+    name: str, settings: TrackerSettings, readings: Sequence[AnyReading], node: str
+) -> Evidence | None:
+    """What holds a node's newest fix after readings; None where its position is not decided.
+
+    Raises:
+        KeyError: there is no tracker of that name, or no such node.
+    """
+    return SMOOTHERS[name](settings).evidence(readings, node)
+
+
+def advice(name: str, settings: TrackerSettings, readings: Sequence[AnyReading], node: str) -> Advice | None:
+    """What would help a node most after readings; None where its position is not decided.
+
+    Raises:
+        KeyError: there is no tracker of that name, or no such node.
+    """
+    return SMOOTHERS[name](settings).advice(readings, node)

@@ -14,6 +14,10 @@ export type DeltaMessage = Schemas["DeltaMessage"];
 export type HeartbeatMessage = Schemas["HeartbeatMessage"];
 export type LiveMessage = Schemas["LiveMessage"];
 export type Track = Schemas["Track"];
+export type Evidence = Schemas["Evidence"];
+export type Measurement = Schemas["Measurement"];
+export type Advice = Schemas["Advice"];
+export type Suggestion = Schemas["Suggestion"];
 
 /** East, north, up (m). */
 export type Position = [number, number, number];

@@ -55,3 +55,8 @@ test("air and battery that were not reported are not made up", () => {
 test("lengths carry their unit and no more digits than matter", () => {
   expect([0.84, 12.44, 130.4, -250.2].map(words.metres)).toEqual(["0.8 m", "12.4 m", "130 m", "-250 m"]);
 });
+
+test("to the west and south a distance has no sign of its own", () => {
+  expect(words.sideways(-4.04, "E", "W")).toBe("4.0\u00a0m\u00a0W");
+  expect(words.sideways(12, "N", "S")).toBe("12.0\u00a0m\u00a0N");
+});

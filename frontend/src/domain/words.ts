@@ -73,6 +73,11 @@ export function metres(value_m: number): string {
   return `${Math.abs(value_m) >= 100 ? value_m.toFixed(0) : value_m.toFixed(1)} m`;
 }
 
+/** A distance to one side or the other: "4.0 m S", in one piece where a line breaks. */
+export function sideways(value_m: number, positive: string, negative: string): string {
+  return `${metres(Math.abs(value_m))} ${value_m < 0 ? negative : positive}`.replaceAll(" ", "\u00a0");
+}
+
 /** A heading as a compass bearing, clockwise from north: "074°". */
 export function compassBearing(heading_rad: number): string {
   const degrees = 90 - (heading_rad * 180) / Math.PI;

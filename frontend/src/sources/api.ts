@@ -1,6 +1,6 @@
 /** Requests to the server, with their answers as values. */
 import createClient from "openapi-fetch";
-import type { FrameAlarm, Incident, Track } from "../domain/types";
+import type { Advice, Evidence, FrameAlarm, Incident, Track } from "../domain/types";
 import type { components, paths } from "./schema";
 
 const client = createClient<paths>({ baseUrl: window.location.origin });
@@ -60,6 +60,18 @@ export async function tracks(
   const params = { path: { incident: id }, query: { ...query, view: "live" as const } };
   // openapi-fetch widens the tuples of the schema to arrays.
   return (await answered(client.GET("/api/v1/incidents/{incident}/tracks", { params }))).tracks as Track[];
+}
+
+/** What holds a node's fix at `t` (Unix s; null: the newest), with everything known now. */
+export async function evidence(id: string, node: string, t: number | null): Promise<Evidence> {
+  const params = { path: { incident: id }, query: { node, ...(t === null ? {} : { t }) } };
+  return (await answered(client.GET("/api/v1/incidents/{incident}/evidence", { params }))) as Evidence;
+}
+
+/** What would make a node's newest position surer. */
+export async function advice(id: string, node: string): Promise<Advice> {
+  const params = { path: { incident: id }, query: { node } };
+  return (await answered(client.GET("/api/v1/incidents/{incident}/advice", { params }))) as Advice;
 }
 
 /**

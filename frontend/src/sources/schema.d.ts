@@ -119,6 +119,49 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/incidents/{incident}/evidence": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Evidence
+         * @description Which measurements hold a node's fix where it is, and which were rejected.
+         *
+         *     It is what the whole log says now of everything up to `t` (without it: up to the newest epoch). An
+         *     entry that came later than `t` but tells of epochs before it counts.
+         */
+        get: operations["get_evidence"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/incidents/{incident}/advice": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Advice
+         * @description What would shrink the uncertainty of a node's newest position most.
+         */
+        get: operations["get_advice"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/session": {
         parameters: {
             query?: never;
@@ -335,9 +378,9 @@ export interface components {
              * Tracker
              * @description the estimator
              * @default kirchhoff
-             * @constant
+             * @enum {string}
              */
-            tracker?: "kirchhoff";
+            tracker?: "kirchhoff" | "paper-a";
         };
         /**
          * Level
@@ -429,9 +472,9 @@ export interface components {
             lag_s?: number;
             /**
              * Tracker
-             * @constant
+             * @enum {string}
              */
-            tracker?: "kirchhoff";
+            tracker?: "kirchhoff" | "paper-a";
         };
         /**
          * SignIn
@@ -1090,6 +1133,109 @@ export interface components {
          * @description What comes over the `live` and `replay` sockets.
          */
         LiveMessage: components["schemas"]["FrameMessage"] | components["schemas"]["DeltaMessage"] | components["schemas"]["HeartbeatMessage"] | components["schemas"]["ErrorMessage"];
+        /**
+         * Evidence
+         * @description What holds a node's fix, with everything known at its epoch.
+         *
+         *         Attributes:
+         *             node: the node.
+         *             t: epoch of the fix, Unix seconds.
+         *             position_m: east, north, up (m).
+         *             covariance_m2: of the position.
+         *             held: the measurements with the largest shares, largest first.
+         *             rejected: those near the fix that were taken for outliers, newest first.
+         *             rest: share of all that is not listed.
+         */
+        Evidence: {
+            node: string;
+            t: number;
+            position_m: [
+                number,
+                number,
+                number
+            ];
+            covariance_m2: [
+                number,
+                number,
+                number,
+                number,
+                number,
+                number
+            ];
+            held: components["schemas"]["Measurement"][];
+            rejected: components["schemas"]["Measurement"][];
+            rest: number;
+        };
+        /**
+         * Measurement
+         * @description One edge of the graph and what it does for a fix.
+         *
+         *         Attributes:
+         *             kind: what was measured.
+         *             t: its epoch, Unix seconds; of a displacement the end of the way.
+         *             a: the node that measured, or that it is about.
+         *             b: the node at the other end; None where there is none.
+         *             value: what was read, in its own unit: m, dBm, rad; of a displacement its length (m).
+         *             residual: what was read less what the solution says, in the same unit.
+         *             sigma: standard deviation that it was given, in the same unit.
+         *             weight: probability that it is a good reading and no outlier, 0 to 1.
+         *             share: its share of the fix's uncertainty as a current's share of the power (paper A, section IV-D):
+         *                 all shares add up to 1.
+         */
+        Measurement: {
+            /** @enum {unknown} */
+            kind: "bearing" | "displacement" | "drop" | "fix" | "height" | "prior" | "range" | "rssi" | "stillness";
+            t: number;
+            a: string;
+            /** @default null */
+            b?: string | null;
+            value: number;
+            residual: number;
+            sigma: number;
+            weight: number;
+            share: number;
+        };
+        /**
+         * Advice
+         * @description What would shrink a node's uncertainty most.
+         *
+         *         Attributes:
+         *             node: the node.
+         *             t: epoch of its position, Unix seconds.
+         *             sigma_m: root of the sum of its horizontal variances now (m).
+         *             suggestions: best first.
+         */
+        Advice: {
+            node: string;
+            t: number;
+            sigma_m: number;
+            suggestions: components["schemas"]["Suggestion"][];
+        };
+        /**
+         * Suggestion
+         * @description One thing that could be done, and what it would be worth.
+         *
+         *         Attributes:
+         *             action: a breadcrumb dropped by `by` where it stands; or a UAV that measures from `position_m`.
+         *             by: who would do it; None: any UAV.
+         *             position_m: where, east, north, up (m).
+         *             sigma_m: standard deviation (root of the horizontal variances' sum) of the node's position afterwards
+         *                 (m).
+         *             gain: share of the present horizontal variance that it would take away, 0 to 1.
+         */
+        Suggestion: {
+            /** @enum {unknown} */
+            action: "drop" | "uav";
+            /** @default null */
+            by?: string | null;
+            position_m: [
+                number,
+                number,
+                number
+            ];
+            sigma_m: number;
+            gain: number;
+        };
     };
     responses: never;
     parameters: never;
@@ -1684,6 +1830,181 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Tracks"];
+                };
+            };
+            /** @description The request could not be understood */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description An access token is needed */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is nothing under that name */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request contradicts what is there */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A field or parameter is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A part that is needed is not available */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description What was waited for did not come in time */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_evidence: {
+        parameters: {
+            query: {
+                node: string;
+                t?: number | null;
+            };
+            header?: never;
+            path: {
+                incident: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Evidence"];
+                };
+            };
+            /** @description The request could not be understood */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description An access token is needed */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is nothing under that name */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request contradicts what is there */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A field or parameter is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A part that is needed is not available */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description What was waited for did not come in time */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_advice: {
+        parameters: {
+            query: {
+                node: string;
+            };
+            header?: never;
+            path: {
+                incident: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Advice"];
                 };
             };
             /** @description The request could not be understood */

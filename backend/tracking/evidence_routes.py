@@ -1,0 +1,61 @@
+"""Routes that tell why a fix is where it is, and what would make it surer: `evidence`, `advice`."""
+
+import asyncio
+from typing import Any
+
+import msgspec
+from fastapi import APIRouter
+from starlette.responses import Response
+
+from backend.errors import Conflict
+from backend.log.incidents import IncidentStore
+from backend.tracking.heads import head_of
+from backend.tracking.routes import Moment, NodeName, answers_with, as_json
+from backend.tracking.smoothing import Smoothing
+from estimator.evidence import Advice, Evidence
+
+
+def evidence_router(incidents: IncidentStore, smoothing: Smoothing) -> APIRouter:
+    """The routes.
+
+    Args:
+        incidents: their settings.
+        smoothing: weighs whole incidents.
+    """
+    router = APIRouter(prefix="/api/v1/incidents/{incident}", tags=["picture"])
+
+    @router.get(
+        "/evidence", operation_id="get_evidence", responses=answers_with("Evidence", 404, 409, 503, 504)
+    )
+    async def evidence(incident: str, node: NodeName, t: Moment = None) -> Response:
+        """Which measurements hold a node's fix where it is, and which were rejected.
+
+        It is what the whole log says now of everything up to `t` (without it: up to the newest epoch). An
+        entry that came later than `t` but tells of epochs before it counts.
+        """
+        known = await asyncio.to_thread(incidents.get, incident)
+        found = await smoothing.evidence(head_of(known), node, t)
+        if found is None:
+            raise Conflict(
+                f"The position of {node!r} is not decided {'yet' if t is None else 'at that time'}."
+            )
+        return as_json(found)
+
+    @router.get("/advice", operation_id="get_advice", responses=answers_with("Advice", 404, 409, 503, 504))
+    async def advice(incident: str, node: NodeName) -> Response:
+        """What would shrink the uncertainty of a node's newest position most."""
+        known = await asyncio.to_thread(incidents.get, incident)
+        found = await smoothing.advice(head_of(known), node)
+        if found is None:
+            raise Conflict(f"The position of {node!r} is not decided yet.")
+        return as_json(found)
+
+    return router
+
+
+def evidence_schemas() -> dict[str, Any]:
+    """Schemas of the answers, for `components.schemas` of the OpenAPI document."""
+    _, schemas = msgspec.json.schema_components(
+        [Evidence, Advice], ref_template="#/components/schemas/{name}"
+    )
+    return dict(schemas)

@@ -1,0 +1,147 @@
+"""`evidence` and `advice` of a real server."""
+
+import time
+from collections.abc import Iterator
+
+import msgspec
+import pytest
+
+from estimator.evidence import Advice, Evidence
+from tests.backend.tracking.conftest import walk
+from tests.running import Post, Server, running
+
+START_T = 1_000.0
+SECONDS = 12
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    with running(tmp_path_factory.mktemp("evidence") / "data") as running_server:
+        yield running_server
+
+
+@pytest.fixture(scope="module")
+def post(server: Server) -> Iterator[Post]:
+    made = Post(server.url)
+    yield made
+    made.http.close()
+
+
+@pytest.fixture(scope="module")
+def walked(post: Post) -> str:
+    """An incident in which two responders walked, and a third has only been heard of."""
+    incident = post.open_incident("a walk")
+    for number, readings in enumerate(walk(SECONDS, START_T)):
+        post.telemetry(incident, f"b{number}", msgspec.to_builtins(readings))
+    last_t = START_T + SECONDS
+    post.telemetry(incident, "heard-of", [{"kind": "node", "t": last_t, "node": "ff3", "role": "responder"}])
+    return incident
+
+
+def get(post: Post, incident: str, what: str, **parameters: object) -> tuple[int, bytes]:
+    response = post.http.get(f"/incidents/{incident}/{what}", params=parameters or None)  # type: ignore[arg-type]  # plain values
+    return response.status_code, response.content
+
+
+def evidence(post: Post, incident: str, **parameters: object) -> Evidence:
+    status, body = get(post, incident, "evidence", **parameters)
+    assert status == 200, body
+    return msgspec.json.decode(body, type=Evidence)
+
+
+def test_the_evidence_names_the_measurements_that_hold_the_fix(post: Post, walked: str) -> None:
+    found = evidence(post, walked, node="ff1")
+    assert found.node == "ff1"
+    assert START_T + SECONDS - 1.0 <= found.t <= START_T + SECONDS + 0.2
+    assert found.held
+    shares = [measurement.share for measurement in found.held]
+    assert shares == sorted(shares, reverse=True)
+    assert sum(shares) + found.rest == pytest.approx(1.0, abs=1e-6)
+
+
+def test_of_a_moment_only_what_tells_of_epochs_up_to_it_counts(post: Post, walked: str) -> None:
+    t = START_T + 5.0
+    found = evidence(post, walked, node="ff1", t=t)
+    assert t - 1.0 <= found.t <= t
+    assert all(measurement.t <= t for measurement in found.held + found.rejected)
+
+
+def test_an_entry_that_came_later_but_tells_of_an_earlier_epoch_counts(post: Post) -> None:
+    incident = post.open_incident("a late word")
+    fix = {"kind": "position", "node": "ff1", "position_m": [0, 0, 0], "sigma_m": [2, 2, 2]}
+    post.telemetry(incident, "b1", [fix | {"t": 10.0}])
+    before = evidence(post, incident, node="ff1", t=11.0)
+    post.telemetry(incident, "b2", [fix | {"t": 20.0}])
+    assert evidence(post, incident, node="ff1", t=11.0) == before
+    post.telemetry(incident, "b3", [fix | {"t": 10.5}])
+    after = evidence(post, incident, node="ff1", t=11.0)
+    assert after.covariance_m2[0] < before.covariance_m2[0]
+
+
+def test_asking_again_costs_nothing(post: Post, walked: str) -> None:
+    for what in ("evidence", "advice"):
+        first = get(post, walked, what, node="ff2")
+        began = time.monotonic()
+        assert get(post, walked, what, node="ff2") == first
+        assert time.monotonic() - began < 0.5
+
+
+def test_the_advice_is_sorted_and_never_makes_it_worse(post: Post, walked: str) -> None:
+    status, body = get(post, walked, "advice", node="ff1")
+    assert status == 200, body
+    found = msgspec.json.decode(body, type=Advice)
+    assert found.node == "ff1"
+    assert found.sigma_m > 0.0
+    gains = [suggestion.gain for suggestion in found.suggestions]
+    assert gains == sorted(gains, reverse=True)
+    assert all(0.0 <= suggestion.gain <= 1.0 for suggestion in found.suggestions)
+    assert all(suggestion.sigma_m <= found.sigma_m for suggestion in found.suggestions)
+
+
+@pytest.mark.parametrize("what", ["evidence", "advice"])
+def test_a_node_without_a_position_is_told_as_such(post: Post, walked: str, what: str) -> None:
+    status, body = get(post, walked, what, node="ff3")
+    assert status == 409
+    assert "not decided" in msgspec.json.decode(body)["detail"]
+
+
+@pytest.mark.parametrize(
+    ("what", "parameters"),
+    [
+        ("evidence", {"node": "nobody"}),
+        ("evidence", {"node": "ff1", "t": START_T - 1.0}),
+        ("advice", {"node": "nobody"}),
+    ],
+)
+def test_a_node_that_was_never_named_is_told_as_such(
+    post: Post, walked: str, what: str, parameters: dict[str, object]
+) -> None:
+    status, body = get(post, walked, what, **parameters)
+    assert status == 404
+    assert str(parameters["node"]) in msgspec.json.decode(body)["detail"]
+
+
+@pytest.mark.parametrize("what", ["evidence", "advice"])
+def test_an_unknown_or_silent_incident_is_told_as_such(post: Post, what: str) -> None:
+    assert get(post, "nobody", what, node="ff1")[0] == 404
+    assert get(post, post.open_incident("silent"), what, node="ff1")[0] == 404
+
+
+@pytest.mark.parametrize(
+    ("what", "parameters"),
+    [
+        ("evidence", {}),
+        ("evidence", {"node": ""}),
+        ("evidence", {"node": "x" * 65}),
+        ("evidence", {"node": "ff1", "t": "NaN"}),
+        ("evidence", {"node": "ff1", "t": -1}),
+        ("advice", {}),
+        ("advice", {"node": ""}),
+    ],
+)
+def test_parameters_outside_their_bounds_are_refused(
+    post: Post, walked: str, what: str, parameters: dict[str, object]
+) -> None:
+    status, body = get(post, walked, what, **parameters)
+    assert status == 422
+    assert msgspec.json.decode(body)["errors"]

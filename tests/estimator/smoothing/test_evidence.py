@@ -1,0 +1,64 @@
+"""Why a fix is where it is, and what would make it surer."""
+
+import pytest
+
+from estimator import trackers
+from estimator.measurements import AnyReading
+from estimator.measurements.position import Position
+from estimator.measurements.range import Range
+from estimator.trackers.base import TrackerSettings
+from tests.estimator.walks import two_responders
+
+SETTINGS = TrackerSettings()
+
+
+def walk() -> list[AnyReading]:
+    return [r for r in two_responders(40) if r.t <= 35.0]
+
+
+def test_the_shares_of_all_currents_add_up_to_one() -> None:
+    found = trackers.evidence("kirchhoff", SETTINGS, walk(), "ff1")
+    assert found is not None
+    assert sum(m.share for m in found.held) + found.rest == pytest.approx(1.0, abs=1e-9)
+    assert all(m.share >= 0.0 for m in found.held)
+    assert [m.share for m in found.held] == sorted((m.share for m in found.held), reverse=True)
+
+
+def test_a_sharp_fix_now_holds_the_position_alone() -> None:
+    before = trackers.evidence("kirchhoff", SETTINGS, walk(), "ff1")
+    assert before is not None
+    fix = Position(t=35.0, node="ff1", position_m=before.position_m, sigma_m=(0.02, 0.02, 0.02))
+    found = trackers.evidence("kirchhoff", SETTINGS, [*walk(), fix], "ff1")
+    assert found is not None
+    assert found.held[0].kind == "fix"
+    assert found.held[0].share > 0.5
+
+
+def test_an_absurd_range_is_listed_as_rejected() -> None:
+    absurd = Range(t=34.5, a="ff1", b="base", range_m=90.0, technology="uwb")
+    found = trackers.evidence("kirchhoff", SETTINGS, [*walk(), absurd], "ff1")
+    assert found is not None
+    assert [m.value for m in found.rejected] == [90.0]
+    assert found.rejected[0].weight < 0.01
+
+
+def test_an_unknown_node_has_no_evidence() -> None:
+    with pytest.raises(KeyError):
+        trackers.evidence("kirchhoff", SETTINGS, walk(), "nobody")
+    with pytest.raises(KeyError):
+        trackers.advice("kirchhoff", SETTINGS, walk(), "nobody")
+
+
+def test_advice_names_the_best_first_and_never_makes_worse() -> None:
+    found = trackers.advice("kirchhoff", SETTINGS, walk(), "ff2")
+    assert found is not None
+    gains = [s.gain for s in found.suggestions]
+    assert gains
+    assert gains == sorted(gains, reverse=True)
+    assert all(0.0 < g <= 1.0 for g in gains)
+    assert all(s.sigma_m <= found.sigma_m for s in found.suggestions)
+
+
+def test_who_is_known_exactly_needs_neither() -> None:
+    assert trackers.evidence("kirchhoff", SETTINGS, walk(), "base") is None
+    assert trackers.advice("kirchhoff", SETTINGS, walk(), "base") is None
