@@ -8,15 +8,15 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import json
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Annotated, NoReturn
+from typing import Annotated
 
 import typer
 
+from backend.bench.cli import bench
 from backend.log.incident import Clock
+from backend.refusals import refuse, refusing
 from backend.reports import to_standard_error
 from backend.settings import DATABASE_VARIABLE, LINK_TOKEN_VARIABLE, Settings
 
@@ -26,6 +26,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+app.add_typer(bench, name="bench")
 
 
 @app.callback()
@@ -42,31 +43,6 @@ Database = Annotated[
     ),
 ]
 Supervised = Annotated[bool, typer.Option("--supervised", hidden=True)]
-
-
-def refuse(reason: object) -> NoReturn:
-    """End with a line that says why."""
-    typer.echo(f"firethread: {reason}", err=True)
-    raise typer.Exit(2)
-
-
-@contextmanager
-def refusing(*more: type[Exception]) -> Iterator[None]:
-    """What the caller can mend ends in one line; a defect of ours keeps its traceback."""
-    from backend.errors import Problem
-    from backend.log.migrate import SchemaTooNew
-    from backend.recordings import NotTheDataSet
-
-    try:
-        yield
-    except BrokenPipeError:
-        raise typer.Exit(1) from None  # whoever read our output has had enough
-    except (Problem, SchemaTooNew, NotTheDataSet, OSError, ValueError) as error:
-        refuse(error)
-    except more as error:
-        refuse(error)
-    except KeyError as error:
-        refuse(error.args[0])
 
 
 @app.command()
@@ -228,51 +204,6 @@ def openapi() -> None:
     with TemporaryDirectory() as folder, listen("127.0.0.1", 0) as link:
         app = build_app(Settings(data=Path(folder)), token=None, link=link, link_token="")
         sys.stdout.write(json.dumps(app.openapi(), indent=1, ensure_ascii=False) + "\n")
-
-
-bench = typer.Typer(
-    help="The project's own speed tables, each beside what it is compared with.", no_args_is_help=True
-)
-app.add_typer(bench, name="bench")
-
-
-@bench.command("ingest")
-def bench_ingest() -> None:
-    """Telemetry into the log, as a ratio to decoding and one fsync per 32 batches."""
-    from backend.bench import ingest
-
-    ingest.run()
-
-
-@bench.command("replay")
-def bench_replay() -> None:
-    """Reading the log back, as a ratio to decoding in memory."""
-    from backend.bench import replay
-
-    replay.run()
-
-
-@bench.command("fanout")
-def bench_fanout() -> None:
-    """Frames to a thousand sockets, as a ratio to a bare broadcaster."""
-    from backend.bench import fanout
-
-    fanout.run()
-
-
-@bench.command("latency")
-def bench_latency() -> None:
-    """From a gateway's POST to the delta at a screen."""
-    from backend.bench import latency
-
-    latency.run()
-
-
-@bench.command("all")
-def bench_all() -> None:
-    """Every table, one after the other."""
-    for table in (bench_ingest, bench_replay, bench_fanout, bench_latency):
-        table()
 
 
 if __name__ == "__main__":

@@ -1,0 +1,64 @@
+from pathlib import Path
+
+import pytest
+
+from backend.bench.accuracy import cases
+from backend.bench.speed import growth, real_time, same_graph, size
+from backend.bench.speed.contestants import Isam, Ours
+from backend.bench.speed.growth import Span
+from backend.bench.speed.laps import Laps
+from backend.bench.speed.race import race
+from backend.bench.speed.run import run
+from tests.backend.bench.accuracy.short import NAME, build, true_track
+
+
+def test_all_contestants_come_through_a_short_walk(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cases, "scenario_names", lambda: [NAME])
+    monkeypatch.setattr(cases, "scenario", lambda _, seed: build(seed))
+    case = cases.case_of(NAME, 0, Path())
+    assert case.truth["ff"].distance_m == true_track().distance_m
+    told = same_graph.pooled([case])
+    assert [one.name for one in told] == ["firethread", "iSAM2, skip 10", "iSAM2, skip 1"]
+    for one in told:
+        [only] = one.runs
+        assert only.failed is None
+        assert len(only.spent) == 61
+        assert only.readings == len(case.reports)
+        assert all(0.0 <= spent.estimates_s <= spent.whole_s for spent in only.spent)
+        assert one.rmse_m < 0.5
+    assert "bar: at most 0.5 of iSAM2, skip 1, RMSE not above its" in same_graph.report(NAME, told)
+
+
+def test_who_works_too_long_has_to_stop_and_the_others_go_on() -> None:
+    laps = Laps(1, 9)
+    seconds = [laps.second(t) for t in range(1, 6)]
+    slow, quick = race(seconds, [Ours(), Isam(10)], laps.introductions(), longest_s=1e-9)
+    assert slow.failed == quick.failed == "stopped in second 1, after 1e-09 s of work"
+    assert len(slow.spent) == 1
+    [through] = race(seconds, [Isam(10)], laps.introductions())
+    assert through.failed is None
+    assert through.readings == sum(len(second) for second in seconds)
+
+
+def test_size_and_real_time_print_their_tables(capsys: pytest.CaptureFixture[str]) -> None:
+    size.run((2,), breadcrumbs=9, duration_s=5)
+    real_time.run(Laps(2, 9, heard=3, sweeps=2), duration_s=5)
+    told = capsys.readouterr().out
+    assert "2 responders" in told
+    assert "iSAM2, skip 10 + covariances" in told
+    assert "share of one core: 0." in told
+    assert "bar: at most 0.5 of one core: " in told
+
+
+def test_growth_measures_the_stretches_asked_for() -> None:
+    laps = Laps(1, 9)
+    seconds = (laps.second(t) for t in range(1, 13))
+    early, late = growth.measure(laps.introductions(), seconds, [Span("a", 2, 6), Span("b", 8, 12)])
+    assert min(early.mean_ms, late.mean_ms) > 0.0
+    assert 10.0 < early.memory_mib < 10_000.0
+    assert "b takes at most 1.1 times a" in growth.report([early, late])
+
+
+def test_unknown_tables_are_refused_with_those_there_are() -> None:
+    with pytest.raises(ValueError, match=r"no table 'nothing'; there are same-graph, growth"):
+        run(["nothing"], Path())
