@@ -3,6 +3,7 @@
 from typing import Literal
 
 import numpy as np
+from numba import njit
 
 from estimator.graph.dense import Array
 from estimator.measurements.base import AngleRad, PairReading, SigmaRad
@@ -26,6 +27,7 @@ class Bearing(PairReading, tag="bearing", frozen=True):
 NEAR_M = 0.3
 
 
+@njit(cache=True)
 def predict_bearing(a: Array, b: Array, heading_rad: Array) -> PairJacobian:
     """Horizontal direction of `b` from `a`, less the heading of `a`; by_extra: derivative by that heading.
 
@@ -36,11 +38,16 @@ def predict_bearing(a: Array, b: Array, heading_rad: Array) -> PairJacobian:
         b: positions, m × 3 (m).
         heading_rad: what the bearing is counted from, from east, m (rad).
     """
-    difference = b - a
-    squared = difference[:, 0] ** 2 + difference[:, 1] ** 2 + NEAR_M**2
-    by_b = np.column_stack([-difference[:, 1], difference[:, 0], np.zeros(len(a))]) / squared[:, None]
-    extra = np.column_stack([-np.ones(len(a)), np.zeros(len(a))])
-    return PairJacobian(np.arctan2(difference[:, 1], difference[:, 0]) - heading_rad, -by_b, by_b, extra)
+    m = len(a)
+    predicted, by_a, by_b, by_extra = np.empty(m), np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 2))
+    for i in range(m):
+        e, n = b[i, 0] - a[i, 0], b[i, 1] - a[i, 1]
+        squared = e * e + n * n + NEAR_M * NEAR_M
+        by_b[i, 0], by_b[i, 1] = -n / squared, e / squared
+        by_a[i, 0], by_a[i, 1] = n / squared, -e / squared
+        by_extra[i, 0] = -1.0
+        predicted[i] = np.arctan2(n, e) - heading_rad[i]
+    return PairJacobian(predicted, by_a, by_b, by_extra)
 
 
 def wrap(angle_rad: Array) -> Array:

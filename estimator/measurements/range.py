@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 from msgspec import Meta
+from numba import njit
 
 from estimator.graph.dense import Array
 from estimator.measurements.base import Identifier, PairReading, SigmaM
@@ -44,6 +45,7 @@ class PairJacobian(NamedTuple):
     by_extra: Array
 
 
+@njit(cache=True)
 def predict_range(a: Array, b: Array, scale_error: Array, bias_m: Array) -> PairJacobian:
     """Range that a technology with a scale and a bias of its own reports: (1 + k) ‖a − b‖ + c.
 
@@ -56,8 +58,15 @@ def predict_range(a: Array, b: Array, scale_error: Array, bias_m: Array) -> Pair
         scale_error: k, m.
         bias_m: c, m (m).
     """
-    difference = a - b
-    distance = np.sqrt((difference**2).sum(axis=1) + NEAR_M**2)
-    along = difference * ((1.0 + scale_error) / distance)[:, None]
-    extra = np.column_stack([distance, np.ones_like(distance)])
-    return PairJacobian((1.0 + scale_error) * distance + bias_m, along, -along, extra)
+    m = len(a)
+    predicted, by_a, by_b, by_extra = np.empty(m), np.empty((m, 3)), np.empty((m, 3)), np.ones((m, 2))
+    for i in range(m):
+        e, n, u = a[i, 0] - b[i, 0], a[i, 1] - b[i, 1], a[i, 2] - b[i, 2]
+        distance = np.sqrt(e * e + n * n + u * u + NEAR_M * NEAR_M)
+        scale = 1.0 + scale_error[i]
+        along = scale / distance
+        by_a[i, 0], by_a[i, 1], by_a[i, 2] = e * along, n * along, u * along
+        by_b[i, 0], by_b[i, 1], by_b[i, 2] = -e * along, -n * along, -u * along
+        by_extra[i, 0] = distance
+        predicted[i] = scale * distance + bias_m[i]
+    return PairJacobian(predicted, by_a, by_b, by_extra)

@@ -4,6 +4,7 @@ from typing import Annotated
 
 import numpy as np
 from msgspec import Meta
+from numba import njit
 
 from estimator.graph.dense import Array
 from estimator.measurements.base import PairReading
@@ -28,6 +29,7 @@ ANTENNA_M = 0.3
 """Antennas never coincide: a boot passes a breadcrumb at about this distance; the logarithm stays finite."""
 
 
+@njit(cache=True)
 def predict_rssi(a: Array, b: Array, power_dbm: Array, exponent: Array) -> PairJacobian:
     """Received power by the log-distance law: P0 − 10 n log10 d, Gaussian in dB (estimation.md, point 4).
 
@@ -37,9 +39,15 @@ def predict_rssi(a: Array, b: Array, power_dbm: Array, exponent: Array) -> PairJ
         power_dbm: P0, received at 1 m, m (dBm).
         exponent: n, path-loss exponent, m.
     """
-    difference = a - b
-    squared = (difference**2).sum(axis=1) + ANTENNA_M**2
-    decades = 0.5 * np.log10(squared)
-    along = difference * (-10.0 * exponent / np.log(10.0) / squared)[:, None]
-    extra = np.column_stack([np.ones_like(squared), -10.0 * decades])
-    return PairJacobian(power_dbm - 10.0 * exponent * decades, along, -along, extra)
+    m = len(a)
+    predicted, by_a, by_b, by_extra = np.empty(m), np.empty((m, 3)), np.empty((m, 3)), np.ones((m, 2))
+    for i in range(m):
+        e, n, u = a[i, 0] - b[i, 0], a[i, 1] - b[i, 1], a[i, 2] - b[i, 2]
+        squared = e * e + n * n + u * u + ANTENNA_M * ANTENNA_M
+        tens = 5.0 * np.log10(squared)
+        along = -10.0 / np.log(10.0) * exponent[i] / squared
+        by_a[i, 0], by_a[i, 1], by_a[i, 2] = e * along, n * along, u * along
+        by_b[i, 0], by_b[i, 1], by_b[i, 2] = -e * along, -n * along, -u * along
+        by_extra[i, 1] = -tens
+        predicted[i] = power_dbm[i] - exponent[i] * tens
+    return PairJacobian(predicted, by_a, by_b, by_extra)
