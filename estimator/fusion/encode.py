@@ -21,6 +21,7 @@ class PriorRecord(msgspec.Struct, frozen=True, array_like=True):
 
     keys: list[Key]
     arrays: tuple[ArrayRecord, ArrayRecord, ArrayRecord]
+    epochs: dict[int, float]
 
 
 class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
@@ -79,7 +80,9 @@ def record_of(state: FusionState) -> FusionRecord:
         None
         if prior is None
         else PriorRecord(
-            list(prior.keys), (_record(prior.matrix), _record(prior.vector), _record(prior.reference))
+            list(prior.keys),
+            (_record(prior.matrix), _record(prior.vector), _record(prior.reference)),
+            dict(prior.epochs),
         ),
         dict(state.uncalibrated),
         state.bent_m,
@@ -102,7 +105,8 @@ def state_of(record: FusionRecord) -> FusionState:
     state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
     state.uncalibrated, state.bent_m = record.uncalibrated, record.bent_m
     if record.prior is not None:
-        state.prior = Prior(tuple(record.prior.keys), *(_array(a) for a in record.prior.arrays))
+        matrix, vector, reference = (_array(a) for a in record.prior.arrays)
+        state.prior = Prior(tuple(record.prior.keys), matrix, vector, reference, record.prior.epochs)
     return state
 
 

@@ -1,5 +1,6 @@
 """What is known from before the window."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from estimator.graph.dense import Array
@@ -16,9 +17,12 @@ class Prior(NamedTuple):
         matrix: Kirchhoff matrix, n × n.
         vector: in deviations from `reference`, n.
         reference: where it was linearised, n.
+        epochs: what each walk's numbers refer to, by node number (s): a node that was silent when the window
+            was cut is known where it was last heard, not at the cut.
     """
 
     keys: tuple[Key, ...]
     matrix: Array
     vector: Array
     reference: Array
+    epochs: Mapping[int, float]

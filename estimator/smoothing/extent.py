@@ -47,9 +47,11 @@ def trim(problem: Problem, solved: Solved) -> tuple[Prior, float] | None:
     left = before.remainder(cut)
     keys: list[Key] = []
     at: list[Indices] = []
+    epochs: dict[int, float] = {}
     for i, walk in enumerate(layout.walks):
         if walk.first <= cut <= walk.last:
             keys.append(("walk", walk.number))
+            epochs[walk.number] = float(layout.times[cut, i])
             at.append(np.arange(STATES * i, STATES * (i + 1)))
     for number, start in layout.stands.items():
         keys.append(("stand", number))
@@ -62,7 +64,8 @@ def trim(problem: Problem, solved: Solved) -> tuple[Prior, float] | None:
         [solved.x[cut * layout.width : (cut + 1) * layout.width], solved.x[layout.length * layout.width :]]
     )
     matrix = left.matrix[np.ix_(chosen, chosen)]
-    return Prior(tuple(keys), matrix, left.vector[chosen], here[chosen]), float(layout.grid[cut])
+    prior = Prior(tuple(keys), matrix, left.vector[chosen], here[chosen], epochs)
+    return prior, float(layout.grid[cut])
 
 
 def restart(state: FusionState) -> None:
@@ -88,7 +91,8 @@ def restart(state: FusionState) -> None:
         at.append(np.arange(*graph.rows(variable).indices(graph.size)))
     chosen = np.concatenate(at) if at else np.zeros(0, dtype=np.intp)
     matrix = graph.information[np.ix_(chosen, chosen)].copy()
-    state.prior = Prior(tuple(keys), matrix, graph.vector[chosen].copy(), graph.reference[chosen].copy())
+    vector, reference = graph.vector[chosen].copy(), graph.reference[chosen].copy()
+    state.prior = Prior(tuple(keys), matrix, vector, reference, {n.index: n.pose_t for n in walking})
     state.window_t = max((n.pose_t for n in walking), default=state.newest_t)
     state.ledger.forget(state.window_t + 1e-3, ("pairs", "singles", "drops"))
     state.ledger.forget(state.window_t - STEPS_S, ("steps", "poses"))

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.fusion.nodes import NodeState
-from estimator.fusion.prior import Key
+from estimator.fusion.prior import Key, Prior
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.variable import Variable
@@ -39,14 +39,17 @@ class Layout:
         state: the fusion that the window belongs to.
         grid: epochs of the keyframes, k, ascending (s).
         walks: the moving nodes, each with six columns of every keyframe.
-        times: the epoch of each walk at each keyframe, k × walks: the grid's, inside its own life.
+        times: the epoch of each walk at each keyframe, k × walks: the grid's, inside its own life; at the
+            first one, what the prior tells of.
         width: columns of a keyframe.
         stands: first column of each standing node in the border, by its number.
         technologies: first column of each technology in the border, by kind and number.
         border: columns of the border.
     """
 
-    def __init__(self, state: FusionState, since_t: float, spacing_s: float) -> None:
+    def __init__(
+        self, state: FusionState, since_t: float, spacing_s: float, prior: Prior | None = None
+    ) -> None:
         self.state = state
         self.since_t = since_t
         nodes = {node.index: node for node in state.nodes.values()}
@@ -66,6 +69,10 @@ class Layout:
         self.column_of = {w.number: STATES * i for i, w in enumerate(self.walks)}
         lives = np.array([[max(alive[n][0], since_t), ends[n]] for n in kept]).reshape(-1, 2)
         self.times: Array = np.clip(self.grid[:, None], lives[:, 0], np.maximum(lives[:, 1], lives[:, 0]))
+        for i, walk in enumerate(self.walks):
+            known_t = None if prior is None else prior.epochs.get(walk.number)
+            if known_t is not None:
+                self.times[0, i] = min(self.times[0, i], known_t)
         self.width = STATES * len(self.walks)
         self._lay_border()
 

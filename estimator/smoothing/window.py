@@ -86,7 +86,7 @@ def refresh(state: FusionState) -> bool:
         restart(state)
         return False
     try:
-        layout = Layout(state, since, spacing_s(state))
+        layout = Layout(state, since, spacing_s(state), state.prior)
         rows = Rows(layout, since, np.inf)
         rows.learn(state.noise)
         problem = Problem(layout, rows, state.prior)

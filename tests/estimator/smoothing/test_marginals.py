@@ -102,9 +102,11 @@ def prior_at(problem: Problem, solved: Solved, cut: int) -> Prior:
     left = chain.remainder(cut)
     keys: list[Key] = []
     at: list[int] = []
+    epochs: dict[int, float] = {}
     for i, walk in enumerate(layout.walks):
         if walk.first <= cut <= walk.last:
             keys.append(("walk", walk.number))
+            epochs[walk.number] = float(layout.times[cut, i])
             at += range(STATES * i, STATES * (i + 1))
     for number, start in layout.stands.items():
         keys.append(("stand", number))
@@ -113,7 +115,7 @@ def prior_at(problem: Problem, solved: Solved, cut: int) -> Prior:
         keys.append(key)
         at += range(layout.width + start, layout.width + start + 2)
     reference = from_cut(problem, solved.x, cut)[np.r_[: layout.width, -layout.border : 0]][at]
-    return Prior(tuple(keys), left.matrix[np.ix_(at, at)], left.vector[at], reference)
+    return Prior(tuple(keys), left.matrix[np.ix_(at, at)], left.vector[at], reference, epochs)
 
 
 def from_cut(problem: Problem, x: Array, cut: int) -> Array:
@@ -139,8 +141,7 @@ def assert_same_from_cut(whole: Problem, at: Solved, cut: int, window: Problem, 
 
 def window_from(whole: Problem, at: Solved, cut: int) -> Problem:
     """The window from a keyframe on, with what the keyframes before it leave."""
-    rest = problem_of(whole.layout.state, float(whole.layout.grid[cut]))
-    return Problem(rest.layout, rest.rows, prior_at(whole, at, cut))
+    return problem_of(whole.layout.state, float(whole.layout.grid[cut]), prior_at(whole, at, cut))
 
 
 def fixes(node: str, seconds: int, sigma_m: float, seed: int) -> list[AnyReading]:
@@ -191,3 +192,25 @@ def test_among_beacons_ranges_and_breadcrumbs_a_window_takes_the_step_of_the_who
     window = window_from(whole, at, cut)
     again = window.solve(from_cut(whole, at.x, cut), iterations=0)
     assert_same_from_cut(whole, at, cut, window, again)
+
+
+def test_a_unit_that_was_silent_when_the_window_was_cut_goes_on_from_where_it_was_last_heard() -> None:
+    """Its next displacement begins there, before the cut: none of it may be lost, nor counted twice."""
+    heard = [Node(t=0.0, node="ff1", role="responder", heading_sigma_rad=0.001), *fixes("ff1", 20, 0.5, 1)]
+    for second in range(1, 21):
+        e, n = np.cos((second - 0.5) / 12.0), np.sin((second - 0.5) / 12.0)
+        heard.append(Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(e, n, 0.0)))
+    others = fixes("ff2", 60, 0.5, 2)
+    then = problem_of(fused([*heard, *others[:40]]))
+    cut = int(np.searchsorted(then.layout.grid, 30.0))
+    prior = prior_at(then, at_rest(then, then.layout.start()), cut)
+    walked = Displacement(t=45.0, from_t=20.0, node="ff1", delta_m=(20.0, 5.0, 0.0))
+    now = fused([*heard, *others, walked])
+    whole, window = problem_of(now), problem_of(now, float(then.layout.grid[cut]), prior)
+    places = []
+    for problem in (whole, window):
+        x = at_rest(problem, problem.layout.start()).x
+        last = (problem.layout.length - 1) * problem.layout.width
+        column = last + problem.layout.column_of[now.nodes["ff1"].index]
+        places.append(x[column : column + 3])
+    assert places[1] == pytest.approx(places[0], abs=0.05)

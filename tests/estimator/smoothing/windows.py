@@ -27,7 +27,7 @@ def problem_of(state: FusionState, since_t: float | None = None, prior: Prior | 
     """The window from `since_t` on; None: the whole incident."""
     begins = state.ledger.table("begins")
     first = float(begins[:, 0].min()) if since_t is None else since_t
-    layout = Layout(state, first, spacing_s(state))
+    layout = Layout(state, first, spacing_s(state), prior)
     rows = Rows(layout, -math.inf if since_t is None else since_t, math.inf)
     rows.learn(state.noise)
     return Problem(layout, rows, prior)
