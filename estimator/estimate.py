@@ -38,7 +38,15 @@ class NodeEstimate(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
 
 
 NoticeCode = Literal[
-    "not_fused", "too_late", "node_moved", "link_changed", "outlier", "conflict", "unknown_node", "no_origin"
+    "not_fused",
+    "too_late",
+    "node_moved",
+    "link_changed",
+    "outlier",
+    "conflict",
+    "unknown_node",
+    "no_origin",
+    "unsolved",
 ]
 
 

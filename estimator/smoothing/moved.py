@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from estimator.fusion.modes import CAUCHY, Mode, Sought, find_modes
+from estimator.fusion.modes import CAUCHY, Sought, find_modes
 from estimator.fusion.nodes import NodeState
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
@@ -39,12 +39,12 @@ class Moved(NamedTuple):
     Attributes:
         name: the node.
         since_t: the first epoch at which its readings agree with the new place (s).
-        mode: the new place.
+        readings: how many were made since.
     """
 
     name: str
     since_t: float
-    mode: Mode
+    readings: int
 
 
 class Changed(NamedTuple):
@@ -77,24 +77,23 @@ def moved_nodes(problem: Problem, solved: Solved) -> list[Moved]:
         first = int(np.argmax(from_here[: len(mine) - READINGS_MIN + 1]))
         if from_here[first] < SUSPICION:
             continue
-        mode = _elsewhere(problem, solved, node, mine[first:])
-        if mode is not None:
-            found.append(Moved(node.node, float(rows.pairs[mine[first], 0]), mode))
+        if _elsewhere(problem, solved, node, mine[first:]):
+            found.append(Moved(node.node, float(rows.pairs[mine[first], 0]), len(mine) - first))
     return found
 
 
-def _elsewhere(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> Mode | None:
-    """A place that explains the readings `mine` of a node clearly better than the one it has."""
+def _elsewhere(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> bool:
+    """Whether some place explains the readings `mine` of a node clearly better than the one it has."""
     rows, layout = problem.rows, problem.layout
     ranged = rows.pairs[mine, 1] == RANGE
     kind: Literal["range", "rssi"] = "range" if ranged.sum() >= READINGS_MIN else "rssi"
     mine = mine[ranged if kind == "range" else ~ranged]
     sources, counts = np.unique(rows.source[mine], return_counts=True)
     if not len(sources):
-        return None
+        return False
     mine = mine[rows.source[mine] == sources[np.argmax(counts)]]
     if len(mine) < READINGS_MIN:
-        return None
+        return False
     a, b = rows.places(solved.x)
     here = rows.pairs[mine, 2] == node.index
     points = np.where(here[:, None], b[mine], a[mine])
@@ -114,12 +113,12 @@ def _elsewhere(problem: Problem, solved: Solved, node: NodeState, mine: Integers
     )
     modes = find_modes(sought)
     if not modes:
-        return None
+        return False
     best = modes[0]
     off = solved.linear.residual[mine] / sigma
     before = float((0.5 * CAUCHY**2 * np.log1p((off / CAUCHY) ** 2)).sum())
     far = float(np.hypot(*(best.position_m - place)[:2])) > max(FAR_M, 2.0 * best.sigma_m)
-    return best if far and before - best.cost > GAIN and best.cost < len(mine) else None
+    return far and before - best.cost > GAIN and best.cost < len(mine)
 
 
 def changed_links(problem: Problem) -> list[Changed]:

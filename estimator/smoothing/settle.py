@@ -11,7 +11,7 @@ from estimator.smoothing.solve import Solved
 from estimator.smoothing.walks import STATES
 
 
-def settle(state: FusionState, layout: Layout, solved: Solved, matrix: Array, vector: Array) -> None:
+def settle(state: FusionState, layout: Layout, solved: Solved, matrix: Array) -> None:
     """Put the window's Kirchhoff matrix of now in the place of the filter's."""
     graph = state.graph
     columns: dict[Variable, Indices] = {}
@@ -46,7 +46,7 @@ def settle(state: FusionState, layout: Layout, solved: Solved, matrix: Array, ve
     if len(order) != len(graph.starts):
         raise ValueError("the window does not hold all that the filter holds")
     kept = np.concatenate([columns[v] for v in order])
-    left, rest = matrix[np.ix_(kept, kept)], vector[kept]
+    left = matrix[np.ix_(kept, kept)]
     if gone:
         out = np.concatenate(gone)
         block = matrix[np.ix_(out, out)]
@@ -55,14 +55,13 @@ def settle(state: FusionState, layout: Layout, solved: Solved, matrix: Array, ve
         except ValueError:
             cholesky = factorise(mended(block))
         coupling = matrix[np.ix_(out, kept)]
-        through = solve(cholesky, np.column_stack([coupling, vector[out]]))
-        left = left - coupling.T @ through[:, :-1]
-        rest = rest - coupling.T @ through[:, -1]
-    settled = Kirchhoff.of(order, 0.5 * (left + left.T), rest, here[kept])
-    settled.rebase(settled.solve())
-    if not np.isfinite(settled.reference).all():
+        left = left - coupling.T @ solve(cholesky, coupling)
+    reference = here[kept]
+    if not np.isfinite(reference).all():
         raise ValueError("the window's solution is not finite")
-    state.graph = settled
+    # Where the window has not come to rest, what is left of its gradient is dropped: it asks for a step
+    # that Marquardt's damping has refused.
+    state.graph = Kirchhoff.of(order, 0.5 * (left + left.T), np.zeros(len(kept)), reference)
 
 
 def keep_poses(state: FusionState, layout: Layout, x: Array) -> None:

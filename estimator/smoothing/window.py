@@ -10,7 +10,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.introduce import NO_PRIOR_SIGMA_M, place
+from estimator.fusion.beginnings import decide
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.extent import (
@@ -93,11 +93,13 @@ def refresh(state: FusionState) -> bool:
         solved = _best(problem, layout.start())
         trimmed = trim(problem, solved)
         left = solved.chain.remainder(layout.length - 1)
-        settle(state, layout, solved, left.matrix, left.vector)
+        settle(state, layout, solved, left.matrix)
         found = learn(state, problem, solved)
         _judge_turns(state, layout, found)
         _tell_changes(state, problem, solved)
-    except ValueError:
+    except ValueError as error:
+        text = f"the last minutes could not be solved again, positions go on without: {error}"
+        state.say("unsolved", state.newest_t, None, text)
         return False
     keep_poses(state, layout, solved.x)
     if trimmed is not None:
@@ -142,7 +144,11 @@ def _best(problem: Problem, x: Array) -> Solved:
 
 
 def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
-    """Branch nodes that lie elsewhere to their new place, and tell of them and of links that have changed."""
+    """Tell of nodes that lie elsewhere and of links that have changed.
+
+    A node that was moved begins anew with what was measured to it since: shown where it lies only once that
+    is decided, for from a straight way two places explain the same ranges.
+    """
     for link in changed_links(problem):
         pair = sorted((link.a, link.b))
         text = f"the link between {pair[0]} and {pair[1]} changed by {link.change_db:+.0f} dB for good"
@@ -153,12 +159,12 @@ def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
         pairs = state.ledger.table("pairs")
         state.ledger.replace("pairs", renumber(pairs, node.index, number, moved.since_t))
         state.graph.delete_nodes([node.position])
-        branch = replace(node, mode="undecided", index=number)
-        wide = (NO_PRIOR_SIGMA_M, NO_PRIOR_SIGMA_M, physics.UNDECIDED_UP_SIGMA_M)
-        place(state, branch, moved.since_t, moved.mode.position_m, wide)
+        state.nodes[moved.name] = replace(node, mode="undecided", index=number)
+        state.sightings[moved.name] = moved.readings
         text = f"{moved.name} lies elsewhere than it did: it was kicked or carried"
         state.say("node_moved", state.newest_t, moved.name, text)
         state.due = True
+    decide(state)
 
 
 def _judge_turns(state: FusionState, layout: Layout, found: Array) -> None:

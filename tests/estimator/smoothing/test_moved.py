@@ -1,11 +1,17 @@
 """Breadcrumbs that lie elsewhere than they did, and links that have changed for good."""
 
 import dataclasses
+import itertools
 import math
 
 import numpy as np
 
 from estimator.estimate import NodeEstimate, Notice
+from estimator.measurements import AnyReading
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.node import Node
+from estimator.measurements.position import Position
+from estimator.measurements.range import Range
 from estimator.simulate import Scenario, scenario
 from estimator.trackers.kirchhoff import KirchhoffTracker
 
@@ -73,6 +79,38 @@ def test_the_kicked_breadcrumb_is_then_shown_where_it_lies() -> None:
     other = tracks["b2"][-1].position_m
     assert other is not None
     assert np.hypot(*(np.array(place) - np.array(other) - kicked)[:2]) < 2.5
+
+
+def along(points_m: list[tuple[float, float]], lies_m: tuple[float, float], t: float) -> list[AnyReading]:
+    """A walker's displacements and fixes from one point to the next, 1 m/s, and its ranges to "b1"."""
+    found: list[AnyReading] = []
+    chance = np.random.default_rng(int(t))
+    for (from_e, from_n), (to_e, to_n) in itertools.pairwise(points_m):
+        seconds = round(math.hypot(to_e - from_e, to_n - from_n))
+        step = ((to_e - from_e) / seconds, (to_n - from_n) / seconds, 0.0)
+        for second in range(1, seconds + 1):
+            t += 1.0
+            e, n = from_e + second * step[0], from_n + second * step[1]
+            found.append(Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=step))
+            found.append(Position(t=t, node="ff1", position_m=(e, n, 0.0), sigma_m=(0.3, 0.3, 0.3)))
+            far = math.hypot(e - lies_m[0], n - lies_m[1]) + float(chance.normal(0.0, 0.1))
+            found.append(Range(t=t, a="ff1", b="b1", range_m=max(far, 0.0), technology="uwb", sigma_m=0.1))
+    return found
+
+
+def test_a_breadcrumb_kicked_beside_a_straight_way_is_shown_nowhere_until_its_side_is_known() -> None:
+    """From a straight way two places explain the same ranges: a guess may be a wrong dot."""
+    tracker = KirchhoffTracker()
+    tracker.fold([Node(t=0.0, node="base", role="base"), Node(t=0.0, node="ff1", role="responder")])
+    tracker.fold([Node(t=0.0, node="b1", role="breadcrumb", position_m=(4.0, 10.0, 0.0), sigma_m=0.3)])
+    tracker.fold(along([(0.0, 0.0), (0.0, 20.0), (0.0, 0.0)], (4.0, 10.0), 0.0))
+    tracker.fold(along([(0.0, 0.0), (0.0, 20.0)], (9.0, 10.0), 40.0))
+    assert [n.node for n in tracker.take_notices() if n.code == "node_moved"] == ["b1"]
+    assert {e.node: e.position_m for e in tracker.estimates()}["b1"] is None
+    tracker.fold(along([(0.0, 20.0), (20.0, 20.0), (20.0, 10.0)], (9.0, 10.0), 60.0))
+    place = {e.node: e.position_m for e in tracker.estimates()}["b1"]
+    assert place is not None
+    assert np.hypot(place[0] - 9.0, place[1] - 10.0) < 0.5
 
 
 def test_a_fire_between_breadcrumbs_is_told_as_changed_links_and_moves_nothing() -> None:
