@@ -6,6 +6,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
+from estimator.fusion.calibration import of_technology
 from estimator.fusion.introduce import place
 from estimator.fusion.motion import offset_at
 from estimator.fusion.nodes import NodeState
@@ -156,6 +157,8 @@ def enter(state: FusionState, a: NodeState, b: NodeState, reading: Range | Rssi)
     number = len(state.links) if before is None else before.number
     link = Link(reading.t, way, number) if before is None else before.next(reading.t, way)
     state.links[key] = link
+    if ranged and "unit" in (a.mode, b.mode):
+        state.uncalibrated.setdefault(source, physics.UNCALIBRATED)
     row = (
         0.0 if ranged else 1.0,
         a.index,
@@ -214,8 +217,8 @@ def technology_states(state: FusionState, technology: str) -> Variable:
     """The block of scale and bias of a ranging technology, added when first used."""
     states = Variable("range", technology)
     if states not in state.graph:
-        bias = physics.RANGE_BIAS_SIGMA_M.get(technology, physics.RANGE_BIAS_OTHER_SIGMA_M)
-        state.graph.add_node(states, (0.0, 0.0), (physics.RANGE_SCALE_SIGMA, bias))
+        known = of_technology(technology).information(state.uncalibrated.get(technology, 0.0))
+        state.graph.add_node(states, (0.0, 0.0), known**-0.5)
     return states
 
 

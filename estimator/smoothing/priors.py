@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.fusion import physics
+from estimator.fusion.calibration import of_technology
 from estimator.fusion.prior import Key
 from estimator.graph.dense import Array, Indices
-from estimator.smoothing.calibration import of_technology
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.walks import STATES
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from estimator.fusion.calibration import Kinds, of_technology, uncalibrated
 from estimator.graph.dense import Array
-from estimator.smoothing.calibration import Kinds, of_technology, uncalibrated
 
 TECHNOLOGIES = ["uwb", "ultrasound", "rtt", "a radio never heard of"]
 SHARES = [0.0, 0.1, 0.5, 0.9, 1.0]

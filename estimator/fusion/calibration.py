@@ -11,6 +11,10 @@ import numpy as np
 from estimator.fusion import physics
 from estimator.graph.dense import Array
 
+TRUSTED = 0.1
+"""Probability of being uncalibrated below which an instrument is taken for calibrated: one that is wrongly
+trusted bends everything, one that is wrongly distrusted costs some sharpness for a while."""
+
 
 class Kinds(NamedTuple):
     """The two kinds of an instrument.
@@ -27,7 +31,7 @@ class Kinds(NamedTuple):
 
     def information(self, share: float) -> Array:
         """Information of the prior where an instrument is uncalibrated with probability `share`, n."""
-        return np.asarray((self.narrow if share < 0.5 else self.wide) ** -2.0)
+        return np.asarray((self.narrow if share < TRUSTED else self.wide) ** -2.0)
 
 
 def of_technology(name: str) -> Kinds:
