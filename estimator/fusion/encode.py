@@ -1,19 +1,16 @@
 """The fusion's state as bytes and back, exact to the last bit."""
 
 import msgspec
-import numpy as np
 
 from estimator.fusion.ledger import COLUMNS
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.noise import LearnedNoise, Link
 from estimator.fusion.prior import Key, Prior
 from estimator.fusion.state import FusionState
-from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
+from estimator.graph.record import ArrayRecord, pack, unpack
 from estimator.graph.variable import Variable
 from estimator.measurements import AnyReading
-
-ArrayRecord = tuple[list[int], bytes]
 
 
 class PriorRecord(msgspec.Struct, frozen=True, array_like=True):
@@ -59,7 +56,7 @@ def record_of(state: FusionState) -> FusionRecord:
     return FusionRecord(
         state.origin_wgs84,
         list(state.graph.starts),
-        (_record(matrix), _record(vector), _record(reference)),
+        (pack(matrix), pack(vector), pack(reference)),
         list(state.nodes.values()),
         dict(state.sightings),
         state.waiting,
@@ -69,7 +66,7 @@ def record_of(state: FusionState) -> FusionRecord:
         dict(state.counts),
         list(state.said),
         dict(state.tried),
-        {name: _record(state.ledger.table(name)) for name in COLUMNS},
+        {name: pack(state.ledger.table(name)) for name in COLUMNS},
         state.owners,
         state.sources,
         state.newest_t,
@@ -81,7 +78,7 @@ def record_of(state: FusionState) -> FusionRecord:
         if prior is None
         else PriorRecord(
             list(prior.keys),
-            (_record(prior.matrix), _record(prior.vector), _record(prior.reference)),
+            (pack(prior.matrix), pack(prior.vector), pack(prior.reference)),
             dict(prior.epochs),
         ),
         dict(state.uncalibrated),
@@ -92,7 +89,7 @@ def record_of(state: FusionState) -> FusionRecord:
 def state_of(record: FusionRecord) -> FusionState:
     """The state that a record was made of."""
     state = FusionState(record.origin_wgs84)
-    matrix, vector, reference = (_array(r) for r in record.arrays)
+    matrix, vector, reference = (unpack(r) for r in record.arrays)
     state.graph = Kirchhoff.of(record.variables, matrix, vector, reference)
     state.nodes = {n.node: n for n in record.nodes}
     state.sightings, state.waiting = record.sightings, record.waiting
@@ -100,21 +97,11 @@ def state_of(record: FusionRecord) -> FusionState:
     state.said, state.tried = dict.fromkeys(record.said), record.tried
     state.links, state.owners, state.sources = record.links, record.owners, record.sources
     for name in COLUMNS:
-        state.ledger.replace(name, _array(record.tables[name]))
+        state.ledger.replace(name, unpack(record.tables[name]))
     state.newest_t, state.due, state.begun_t = record.newest_t, record.due, record.begun_t
     state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
     state.uncalibrated, state.bent_m = record.uncalibrated, record.bent_m
     if record.prior is not None:
-        matrix, vector, reference = (_array(a) for a in record.prior.arrays)
+        matrix, vector, reference = (unpack(a) for a in record.prior.arrays)
         state.prior = Prior(tuple(record.prior.keys), matrix, vector, reference, record.prior.epochs)
     return state
-
-
-def _record(array: Array) -> ArrayRecord:
-    return list(array.shape), array.tobytes()
-
-
-def _array(record: ArrayRecord) -> Array:
-    shape, content = record
-    array: Array = np.frombuffer(content, dtype=np.float64).reshape(shape).copy()
-    return array

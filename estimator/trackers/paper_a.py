@@ -8,10 +8,10 @@ from collections.abc import Mapping, Sequence
 from typing import Self
 
 import msgspec
-import numpy as np
 
 from estimator.estimate import NodeEstimate, Notice, Relative
 from estimator.graph.dense import Array
+from estimator.graph.record import ArrayRecord, pack, unpack
 from estimator.graph.variable import Variable
 from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude, Pressure
@@ -36,14 +36,13 @@ ORDER: dict[type, int] = {Node: 0, Displacement: 1, Position: 2, Drop: 3, Range:
 """Of one epoch, first who is there and where it went, then what was measured there."""
 
 _encode = msgspec.msgpack.Encoder().encode
-_ArrayRecord = tuple[list[int], bytes]
 
 
 class _Snapshot(msgspec.Struct, frozen=True, array_like=True):
     version: int
     settings: TrackerSettings
     vertices: list[Variable]
-    storage: tuple[_ArrayRecord, _ArrayRecord, _ArrayRecord]
+    storage: tuple[ArrayRecord, ArrayRecord, ArrayRecord]
     nodes: list[GraphNode]
     counts: dict[str, int]
     notices: list[Notice]
@@ -143,7 +142,7 @@ class PaperATracker:
                 VERSION,
                 self.settings,
                 list(state.network.graph.starts),
-                (_record(matrix), _record(vector), _record(reference)),
+                (pack(matrix), pack(vector), pack(reference)),
                 list(state.nodes.values()),
                 state.counts,
                 state.notices,
@@ -168,20 +167,10 @@ class PaperATracker:
         except msgspec.DecodeError as error:
             raise ValueError(f"this is no snapshot of paper A's tracker: {error}") from error
         tracker = cls(snapshot.settings)
-        matrix, vector, reference = (_array(record) for record in snapshot.storage)
+        matrix, vector, reference = (unpack(record) for record in snapshot.storage)
         restored = tracker._state
         restored.network = Network.of(snapshot.vertices, (matrix, vector, reference))
         restored.nodes = {node.node: node for node in snapshot.nodes}
         restored.counts, restored.notices = snapshot.counts, snapshot.notices
         restored.said = dict.fromkeys(snapshot.said)
         return tracker
-
-
-def _record(array: Array) -> _ArrayRecord:
-    return list(array.shape), array.tobytes()
-
-
-def _array(record: _ArrayRecord) -> Array:
-    shape, content = record
-    array: Array = np.frombuffer(content, dtype=np.float64).reshape(shape).copy()
-    return array
