@@ -31,7 +31,7 @@ def restore(name: str, state: bytes) -> Tracker:
 
     Raises:
         KeyError: there is none of that name.
-        ValueError: another version wrote the snapshot.
+        ValueError: another version wrote the snapshot, or it is none: fold the log anew.
     """
     return TRACKERS[name].restore(state)
 

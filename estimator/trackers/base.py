@@ -51,7 +51,7 @@ class Tracker(Protocol):
         """A tracker that goes on where `snapshot` was taken.
 
         Raises:
-            ValueError: `state` was written by another version.
+            ValueError: `state` was written by another version, or is no snapshot: fold the log anew.
         """
 
 

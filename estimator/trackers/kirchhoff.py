@@ -19,8 +19,9 @@ from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.lag import Lag, LagRecord
+from estimator.trackers.snapshot import read_snapshot
 
-VERSION = 1
+VERSION = 2
 
 
 class _Snapshot(msgspec.Struct, frozen=True, array_like=True):
@@ -28,10 +29,6 @@ class _Snapshot(msgspec.Struct, frozen=True, array_like=True):
     settings: TrackerSettings
     lag: LagRecord
     fusion: list[FusionRecord]
-
-
-class _Version(msgspec.Struct, frozen=True, array_like=True):
-    version: int
 
 
 class KirchhoffTracker:
@@ -90,15 +87,7 @@ class KirchhoffTracker:
         Raises:
             ValueError: `state` was written by another version, or is no snapshot.
         """
-        try:
-            version = msgspec.msgpack.decode(state, type=_Version).version
-            if version != VERSION:
-                raise ValueError(
-                    f"the snapshot is of version {version}, this tracker reads {VERSION}: fold the log anew"
-                )
-            snapshot = msgspec.msgpack.decode(state, type=_Snapshot)
-        except msgspec.DecodeError as error:
-            raise ValueError(f"this is no snapshot of a Kirchhoff tracker: {error}") from error
+        snapshot = read_snapshot(state, _Snapshot, VERSION)
         tracker = cls(snapshot.settings)
         tracker._lag = Lag.of(snapshot.settings.lag_s, snapshot.lag, [state_of(r) for r in snapshot.fusion])
         return tracker

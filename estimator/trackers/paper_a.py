@@ -30,6 +30,7 @@ from estimator.paper_a.network import Network
 from estimator.paper_a.node import GraphNode
 from estimator.paper_a.state import PaperAState
 from estimator.trackers.base import TrackerSettings
+from estimator.trackers.snapshot import read_snapshot
 
 VERSION = 1
 ORDER: dict[type, int] = {Node: 0, Displacement: 1, Position: 2, Drop: 3, Range: 4, Rssi: 4, Retire: 6}
@@ -47,10 +48,6 @@ class _Snapshot(msgspec.Struct, frozen=True, array_like=True):
     counts: dict[str, int]
     notices: list[Notice]
     said: list[str]
-
-
-class _Version(msgspec.Struct, frozen=True, array_like=True):
-    version: int
 
 
 class PaperATracker:
@@ -157,15 +154,7 @@ class PaperATracker:
         Raises:
             ValueError: `state` was written by another version, or is no snapshot.
         """
-        try:
-            version = msgspec.msgpack.decode(state, type=_Version).version
-            if version != VERSION:
-                raise ValueError(
-                    f"the snapshot is of version {version}, this tracker reads {VERSION}: fold the log anew"
-                )
-            snapshot = msgspec.msgpack.decode(state, type=_Snapshot)
-        except msgspec.DecodeError as error:
-            raise ValueError(f"this is no snapshot of paper A's tracker: {error}") from error
+        snapshot = read_snapshot(state, _Snapshot, VERSION)
         tracker = cls(snapshot.settings)
         matrix, vector, reference = (unpack(record) for record in snapshot.storage)
         restored = tracker._state

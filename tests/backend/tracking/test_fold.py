@@ -7,6 +7,7 @@ import pytest
 from backend.log.base import LoggedBatch, RecordedFrame
 from backend.tracking.fold import IncidentFold, OtherState
 from estimator.measurements import AnyReading
+from estimator.trackers import kirchhoff
 from estimator.trackers.base import TrackerSettings
 from tests.backend.tracking.conftest import walk
 
@@ -100,6 +101,15 @@ def test_a_state_for_other_settings_or_of_another_version_is_refused() -> None:
         IncidentFold.restore(b"nonsense", "kirchhoff", SETTINGS)
     with pytest.raises(OtherState):
         IncidentFold.restore(state[:-20], "kirchhoff", SETTINGS)
+
+
+def test_a_state_whose_tracker_is_of_another_version_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    fold = IncidentFold("kirchhoff", SETTINGS)
+    fold_all(fold, walk(2))
+    state = fold.state()
+    monkeypatch.setattr(kirchhoff, "VERSION", kirchhoff.VERSION + 1)
+    with pytest.raises(OtherState, match="fold the log anew"):
+        IncidentFold.restore(state, "kirchhoff", SETTINGS)
 
 
 def test_two_responders_relative_position_is_told() -> None:

@@ -90,15 +90,6 @@ def test_a_tracker_restored_from_a_snapshot_goes_on_to_the_last_bit(cut: int) ->
     assert restored.snapshot() == whole.snapshot()
 
 
-def test_a_snapshot_of_another_version_is_refused() -> None:
-    state = bytearray(KirchhoffTracker().snapshot())
-    state[1] = 99
-    with pytest.raises(ValueError, match="version 99"):
-        KirchhoffTracker.restore(bytes(state))
-    with pytest.raises(ValueError, match="no snapshot"):
-        KirchhoffTracker.restore(b"\xc1")
-
-
 def test_the_walk_ends_where_it_ended_and_the_unknown_beacon_is_found() -> None:
     tracker = folded(WALK)
     walker, beacon = estimate(tracker, "ff1"), estimate(tracker, "beacon")

@@ -33,12 +33,6 @@ def test_a_tracker_restored_from_a_snapshot_goes_on_to_the_last_bit(cut: int) ->
     assert restored.snapshot() == whole.snapshot()
 
 
-@pytest.mark.parametrize("state", [b"", b"nonsense", b"\x91\x63"])
-def test_what_is_no_snapshot_of_this_version_is_refused(state: bytes) -> None:
-    with pytest.raises(ValueError, match="snapshot"):
-        PaperATracker.restore(state)
-
-
 @settings(max_examples=250, deadline=None)
 @given(st.lists(st.lists(readings, max_size=12), max_size=8), st.booleans())
 def test_any_valid_readings_give_finite_estimates_and_covariances_that_are_positive(
