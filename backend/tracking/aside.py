@@ -1,11 +1,13 @@
 """What the process for heavy sums does: reads the log and a stored state, and answers in plain values."""
 
+from collections.abc import Iterator
+
 from backend.errors import NotFound, Unavailable
 from backend.log.engine import make_engine
 from backend.log.read import SqlLogReader
-from backend.tracking.fold import IncidentFold, OtherState
+from backend.tracking.fold import IncidentFold
 from backend.tracking.heads import Head
-from backend.tracking.reading import read_block
+from backend.tracking.reading import Decoded, read_block
 from estimator import trackers
 from estimator.estimate import Relative, TrackPoint
 from estimator.evidence import Advice, Evidence
@@ -82,20 +84,18 @@ def _not_named(node: str, t: float | None) -> NotFound:
 def _whole_log(database_url: str, head: Head) -> list[AnyReading]:
     engine = make_engine(database_url)
     try:
-        return _readings(SqlLogReader(engine), head)
+        return [reading for _, readings in _entries(SqlLogReader(engine), head) for reading in readings]
     finally:
         engine.dispose()
 
 
-def _readings(reader: SqlLogReader, head: Head) -> list[AnyReading]:
-    readings: list[AnyReading] = []
+def _entries(reader: SqlLogReader, head: Head) -> Iterator[Decoded]:
     seq = 0
     while seq < head.last_seq and (block := read_block(reader, head.incident, seq)):
-        for batch, of_batch in block:
+        for batch, readings in block:
             if batch.seq <= head.last_seq:
-                readings += of_batch
+                yield batch, readings
         seq = block[-1][0].seq
-    return readings
 
 
 def relative_from_state(database_url: str, head: Head, a: str, b: str) -> Relative | None:
@@ -103,7 +103,8 @@ def relative_from_state(database_url: str, head: Head, a: str, b: str) -> Relati
 
     Raises:
         NotFound: a node is not known.
-        Unavailable: there is no state of this version.
+        OtherState: the stored state cannot be used: `relative_of_log` tells.
+        Unavailable: there is no state.
         LogUnreadable: the database failed.
     """
     engine = make_engine(database_url)
@@ -115,9 +116,35 @@ def relative_from_state(database_url: str, head: Head, a: str, b: str) -> Relati
         raise NotFound(f"No reading has named {a!r} or {b!r} yet.")
     if snapshot is None:
         raise Unavailable("Nothing of this incident has been estimated yet: start an estimator worker.")
+    return _relative(IncidentFold.restore(snapshot.state, head.tracker, head.settings), a, b)
+
+
+def relative_of_log(database_url: str, head: Head, a: str, b: str) -> Relative | None:
+    """Where `b` is relative to `a`, with the log folded from its start; None where either is undecided.
+
+    Args:
+        database_url: SQLAlchemy URL of the log.
+        head: the incident; entries after its `last_seq` are left out.
+        a: the one node.
+        b: the other node.
+
+    Raises:
+        NotFound: a node is not known.
+        LogUnreadable: the database failed.
+    """
+    fold = IncidentFold(head.tracker, head.settings)
+    engine = make_engine(database_url)
     try:
-        return IncidentFold.restore(snapshot.state, head.tracker, head.settings).relative(a, b)
-    except OtherState as why:
-        raise Unavailable(f"The stored state cannot be used ({why}): start an estimator worker.") from why
+        for batch, readings in _entries(SqlLogReader(engine), head):
+            for _ in fold.fold(batch, readings):
+                pass
+    finally:
+        engine.dispose()
+    return _relative(fold, a, b)
+
+
+def _relative(fold: IncidentFold, a: str, b: str) -> Relative | None:
+    try:
+        return fold.relative(a, b)
     except KeyError as error:
         raise NotFound(f"There is no node {error.args[0]!r} in this incident.") from error

@@ -11,7 +11,15 @@ from concurrent.futures.process import BrokenProcessPool
 from typing import Any, Generic, ParamSpec, TypeVar
 
 from backend.errors import TooSlow, Unavailable
-from backend.tracking.aside import Smoothed, advice_of_log, evidence_of_log, relative_from_state, smooth_log
+from backend.tracking.aside import (
+    Smoothed,
+    advice_of_log,
+    evidence_of_log,
+    relative_from_state,
+    relative_of_log,
+    smooth_log,
+)
+from backend.tracking.fold import OtherState
 from backend.tracking.heads import Head
 from estimator.estimate import Relative
 from estimator.evidence import Advice, Evidence
@@ -93,6 +101,7 @@ class Smoothing:
         self._tracks: Kept[Smoothed] = Kept(KEPT)
         self._evidence: Kept[Evidence | None] = Kept(EXPLAINED)
         self._advice: Kept[Advice | None] = Kept(EXPLAINED)
+        self._relative: Kept[Relative | None] = Kept(EXPLAINED)
 
     async def smoothed(self, head: Head) -> Smoothed:
         """The smoothed tracks of an incident with everything known now.
@@ -156,10 +165,12 @@ class Smoothing:
     async def relative(self, head: Head, a: str, b: str) -> Relative | None:
         """Where `b` is relative to `a` after the newest stored state; None where either is undecided.
 
+        Where that state cannot be used, the whole log is folded anew for it.
+
         Raises:
             NotFound: a node is not known.
             Unavailable: there is no state that could tell.
-            TooSlow: other work is in the way.
+            TooSlow: it takes long, or other sums are in the way.
         """
         try:
             return await asyncio.wait_for(
@@ -167,12 +178,20 @@ class Smoothing:
             )
         except TimeoutError:
             raise TooSlow("Other sums are in the way: ask again in a minute.") from None
+        except OtherState:
+            return await self._relative.get(
+                (head, a, b),
+                lambda: self._aside(relative_of_log, self._url, head, a, b),
+                RELATIVE_WITHIN_S,
+                "Folding the log anew",
+            )
 
     def close(self) -> None:
         """End the process."""
         self._tracks.cancel()
         self._evidence.cancel()
         self._advice.cancel()
+        self._relative.cancel()
         if self._pool is not None:
             for process in self._pool._processes.values():  # noqa: SLF001 - shutdown() would wait for the work
                 process.terminate()

@@ -1,17 +1,32 @@
-"""Which readings the estimator is given when a fix is to be explained."""
+"""What is read of the log and of stored states for sums aside."""
 
-from collections.abc import Sequence
+import asyncio
+from collections.abc import Callable, Sequence
+from typing import ParamSpec, TypeVar
 
 import pytest
+import sqlalchemy as sa
 
+from backend.coordination.lease import Leases
 from backend.errors import NotFound
+from backend.log.base import Snapshot
+from backend.log.derived import SqlDerivedWriter
+from backend.log.engine import writing
 from backend.log.incidents import IncidentStore
-from backend.tracking.aside import advice_of_log, evidence_of_log
+from backend.log.read import SqlLogReader
+from backend.tracking.aside import advice_of_log, evidence_of_log, relative_from_state
+from backend.tracking.fold import IncidentFold
 from backend.tracking.heads import Head, head_of
+from backend.tracking.reading import read_block
+from backend.tracking.smoothing import Smoothing
 from estimator import trackers
 from estimator.measurements import AnyReading, Position
+from estimator.trackers import kirchhoff
 from estimator.trackers.base import TrackerSettings
-from tests.backend.tracking.conftest import Write
+from tests.backend.tracking.conftest import Write, walk
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class Asked:
@@ -75,3 +90,32 @@ def test_a_node_that_nothing_has_named_is_not_found(sqlite_url: str, head: Head,
     with pytest.raises(NotFound, match="has named 'ff9' yet"):
         advice_of_log(sqlite_url, head, "ff9")
     assert asked.epochs
+
+
+def test_where_the_stored_state_is_refused_the_log_tells_the_relative_position(
+    sqlite_url: str, engine: sa.Engine, store: IncidentStore, write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    incident = store.create("of an older version", "recorded").id
+    write(incident, walk(5))
+    head = head_of(store.get(incident))
+    fold = IncidentFold(head.tracker, head.settings)
+    for batch, readings in read_block(SqlLogReader(engine), incident, 0):
+        list(fold.fold(batch, readings))
+    epoch = Leases(lambda: writing(engine), "north").acquire(incident)
+    assert epoch is not None
+    SqlDerivedWriter(engine).save(incident, epoch, [], Snapshot(seq=fold.seq, state=fold.state()))
+    expected = relative_from_state(sqlite_url, head, "ff1", "ff2")
+    assert expected is not None
+
+    monkeypatch.setattr(kirchhoff, "VERSION", kirchhoff.VERSION + 1)
+    smoothing = Smoothing(sqlite_url)
+    monkeypatch.setattr(smoothing, "_aside", at_once)
+    assert asyncio.run(smoothing.relative(head, "ff1", "ff2")) == expected
+    with pytest.raises(NotFound, match="no node 'ff9'"):
+        asyncio.run(smoothing.relative(head, "ff1", "ff9"))
+    smoothing.close()
+
+
+async def at_once(function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    """Stands in for the process aside."""
+    return function(*args, **kwargs)
