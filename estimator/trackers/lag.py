@@ -136,8 +136,9 @@ class Lag:
             before = self._checkpoints[-1][1]
             after = before.copy()
             in_order = [e.reading for e in sorted(self._entries[tick], key=key)]
-            self._notices[tick] = fold_tick(after, end_of(tick), in_order)
+            fold_tick(after, end_of(tick), in_order)
             keep_up(after, end_of(tick))
+            self._notices[tick] = list(after.notices)
             self._checkpoints.append((tick, after))
             self._folded = tick
             self._thin(tick)
