@@ -32,7 +32,6 @@ class Child:
         self._command = [sys.executable, "-m", "backend.cli", *arguments]
         self._environment = {**os.environ, **environment}
         self._task: asyncio.Task[None] | None = None
-        self.restarts = 0
 
     def start(self) -> None:
         """Begin to keep it running."""
@@ -59,7 +58,6 @@ class Child:
             except asyncio.CancelledError:
                 await _end(process)
                 raise
-            self.restarts += 1
             pause_s = FIRST_PAUSE_S if loop.time() - began > SETTLED_S else min(2 * pause_s, LONGEST_PAUSE_S)
             log.warning("child ended, it is started again", child=self.name, code=code, pause_s=pause_s)
             await asyncio.sleep(pause_s)

@@ -130,9 +130,6 @@ class LogReader(Protocol):
     def batches(self, incident: str, after: int = 0, limit: int | None = None) -> Iterator[LoggedBatch]:
         """Batches with `seq` > `after` in `seq` order, in one consistent read per fetched block."""
 
-    def last_seq(self, incident: str) -> int:
-        """The newest `seq` of an incident, 0 if it has none."""
-
     def frame_at(self, incident: str, t: float, received_by: float | None = None) -> RecordedFrame | None:
         """The newest recorded frame with second ≤ `t` (and received ≤ `received_by`)."""
 

@@ -8,7 +8,7 @@ import sqlalchemy as sa
 from backend.log.append import decode_rejected
 from backend.log.base import LoggedBatch, RecordedFrame, Snapshot
 from backend.log.engine import reading
-from backend.log.schema import batches, frames, incidents, snapshots
+from backend.log.schema import batches, frames, snapshots
 
 BLOCK_ROWS = 512
 BLOCK_BYTES = 4 * 1024 * 1024
@@ -83,12 +83,6 @@ class SqlLogReader:
                     )
             result.close()
         return block, len(block) < rows and size < BLOCK_BYTES
-
-    def last_seq(self, incident: str) -> int:
-        """The newest `seq` of an incident, 0 if it has none."""
-        query = sa.select(incidents.c.last_seq).where(incidents.c.id == incident)
-        with reading(self._engine) as connection:
-            return connection.execute(query).scalar() or 0
 
     def frame_at(self, incident: str, t: float, received_by: float | None = None) -> RecordedFrame | None:
         """The newest recorded frame with second ≤ `t` (and received ≤ `received_by`)."""

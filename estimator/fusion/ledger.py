@@ -53,11 +53,6 @@ class Ledger:
         """Append one row."""
         self._open[table].append(row)
 
-    def extend(self, table: Table, rows: Array) -> None:
-        """Append rows, m × columns."""
-        self.close()
-        self.chunks[table] = (*self.chunks[table], rows)
-
     def close(self) -> None:
         """Close the open rows to chunks: what has been added until now."""
         for name, rows in self._open.items():
@@ -87,8 +82,3 @@ class Ledger:
         for name in () if self.complete else tables:
             rows = self.table(name)
             self.replace(name, rows[rows[:, 0] >= before_t])
-
-
-def column(table: Table, name: str) -> int:
-    """Number of a table's column."""
-    return COLUMNS[table].index(name)

@@ -8,7 +8,6 @@ is and where it is centred, so an obstructed range may be too long but hardly to
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from estimator.graph.dense import Array
 
@@ -66,9 +65,3 @@ def weigh(
     from_good, from_bad = good / good_variance, (1.0 - good) / bad_variance
     information = from_good + from_bad
     return Weighted(information, residual - shift * from_bad / information, good)
-
-
-def cauchy_weight(residual: Array, scale: float) -> Array:
-    """Weight 1 / (1 + (r / c)²) of the Cauchy loss for whitened residuals (m), c = `scale`."""
-    weight: NDArray[np.float64] = 1.0 / (1.0 + (residual / scale) ** 2)
-    return weight

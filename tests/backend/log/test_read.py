@@ -63,11 +63,3 @@ def test_a_slow_consumer_holds_nothing_back(
     append_group(engine, [batch("later")])
     store.change(batch.incident, {"name": "renamed"})
     assert [one.seq for one in batches] == [2, 3, 4, 5]
-
-
-def test_last_seq_is_0_where_there_is_nothing(engine: sa.Engine, batch: MakeBatch) -> None:
-    reader = SqlLogReader(engine)
-    assert reader.last_seq("nowhere") == 0
-    assert reader.last_seq(batch.incident) == 0
-    append_group(engine, [batch("x"), batch("y")])
-    assert reader.last_seq(batch.incident) == 2
