@@ -12,6 +12,7 @@ import numpy as np
 from estimator.fusion import physics
 from estimator.fusion.held import path_loss_states, technology_states
 from estimator.fusion.introduce import NO_PRIOR_SIGMA_M, place
+from estimator.fusion.ledger import RANGE
 from estimator.fusion.modes import Mode, Sought, find_modes
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.sightings import Sightings, of_node
@@ -47,7 +48,7 @@ def decide(state: FusionState) -> None:
         if sightings is None or len(sightings.t) < physics.SIGHTINGS_MIN:
             continue
         owner = state.sources[sightings.source]
-        ranged = sightings.kind == 0
+        ranged = sightings.kind == RANGE
         states = technology_states(state, owner) if ranged else path_loss_states(state, owner[len("rssi ") :])
         if covariance is None or len(covariance) != state.graph.size:
             covariance = state.graph.covariance()
@@ -62,12 +63,12 @@ def _choose(
     state: FusionState, node: NodeState, seen: Sightings, extra: Array, extra_covariance: Array
 ) -> Chosen | None:
     sigma = seen.sigma * state.learned(state.sources[seen.source]).factor
-    if seen.kind == 0:
+    if seen.kind == RANGE:
         sigma = np.hypot(sigma, seen.spread)
     up_sigma = physics.UNDECIDED_UP_SIGMA_M
     if node.role in MOVING_ROLES:
         up_sigma = physics.UNDECIDED_MOVING_UP_SIGMA_M
-    kind: Literal["range", "rssi"] = "range" if seen.kind == 0 else "rssi"
+    kind: Literal["range", "rssi"] = "range" if seen.kind == RANGE else "rssi"
     sought = Sought(
         kind=kind,
         points=seen.points,

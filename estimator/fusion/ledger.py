@@ -23,6 +23,9 @@ numbers of a moving node; steps: displacements with the variances that they add;
 and stands: how moving and standing nodes entered, with their priors; poses: where moving nodes were thought
 to be. Nodes are told by the number of their block."""
 
+RANGE, RSSI, BEARING, BODY_BEARING = range(4)
+"""Kinds of pairs; the last two are bearings in the local frame and in the body frame of `a`."""
+
 MERGED = 64
 """Chunks of a table that are joined to one when there are more."""
 

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from estimator.fusion.ledger import RANGE, RSSI
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
@@ -18,7 +19,7 @@ class Sightings(NamedTuple):
     """Ranges or RSSI to one node.
 
     Attributes:
-        kind: 0 for ranges, 1 for RSSI.
+        kind: `RANGE` or `RSSI`, as in the ledger.
         source: number of their technology.
         t: epochs, m (s).
         points: where from, m × 3 (m).
@@ -39,9 +40,9 @@ class Sightings(NamedTuple):
 def of_node(state: FusionState, node: NodeState, since_t: float) -> Sightings | None:
     """The sightings of a node by the technology that saw it most, ranges first; None where there are none."""
     pairs = state.ledger.table("pairs")
-    pairs = pairs[(pairs[:, 1] <= 1.0) & (pairs[:, 0] >= since_t)]
+    pairs = pairs[np.isin(pairs[:, 1], (RANGE, RSSI)) & (pairs[:, 0] >= since_t)]
     mine = pairs[(pairs[:, 2] == node.index) | (pairs[:, 3] == node.index)]
-    ranged = mine[:, 1] == 0.0
+    ranged = mine[:, 1] == RANGE
     if ranged.any():
         mine = mine[ranged]
     if not len(mine):

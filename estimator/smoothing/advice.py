@@ -11,6 +11,7 @@ import numpy as np
 from estimator.evidence import Advice, Suggestion
 from estimator.fusion import physics
 from estimator.fusion.introduce import tuple_of
+from estimator.fusion.ledger import RANGE
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
@@ -89,7 +90,7 @@ def advise(state: FusionState, name: str) -> Advice | None:
 def _link(state: FusionState, node: NodeState) -> Link:
     """What the node measures with: ranges if it has any, else signal strength."""
     pairs = state.ledger.table("pairs")
-    mine = pairs[((pairs[:, 2] == node.index) | (pairs[:, 3] == node.index)) & (pairs[:, 1] == 0.0)]
+    mine = pairs[((pairs[:, 2] == node.index) | (pairs[:, 3] == node.index)) & (pairs[:, 1] == RANGE)]
     if len(mine):
         source = state.sources[int(mine[-1, 6])]
         sigma = float(mine[-1, 5]) * state.learned(source).factor

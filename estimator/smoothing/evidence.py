@@ -9,7 +9,9 @@ carries all.
 import numpy as np
 
 from estimator.evidence import Evidence, EvidenceKind, Measurement
+from estimator.fusion import physics
 from estimator.fusion.introduce import tuple_of, upper_triangle
+from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.layout import Layout
@@ -20,8 +22,17 @@ from estimator.smoothing.walks import STATES
 HELD_MAX = 30
 REJECTED_MAX = 20
 RECENT_S = 60.0
-PAIR_KINDS: tuple[EvidenceKind, ...] = ("range", "rssi", "bearing", "bearing")
-SINGLE_KINDS: dict[int, EvidenceKind] = {4: "fix", 5: "height", 6: "stillness"}
+PAIR_KINDS: dict[int, EvidenceKind] = {
+    RANGE: "range",
+    RSSI: "rssi",
+    BEARING: "bearing",
+    BODY_BEARING: "bearing",
+}
+SINGLE_KINDS: dict[int, EvidenceKind] = {
+    physics.NOISES.index(physics.FIX_NOISE): "fix",
+    physics.NOISES.index(physics.HEIGHT_NOISE): "height",
+    physics.NOISES.index(physics.TURN_NOISE): "stillness",
+}
 
 
 def explain(state: FusionState, problem: Problem, solved: Solved, name: str) -> Evidence | None:

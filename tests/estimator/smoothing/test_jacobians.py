@@ -8,10 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.fusion import physics
+from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.graph.dense import Array
 from estimator.measurements import bearing
 from estimator.smoothing.ends import Ends
-from estimator.smoothing.rows import BEARING, BODY_BEARING, RANGE, RSSI, Rows
+from estimator.smoothing.rows import Rows
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.walks import STATES, Motion, Way, free_motions, led_by, unit_motion
 from tests.estimator.smoothing.windows import fused, problem_of
