@@ -15,6 +15,7 @@ def played(request: pytest.FixtureRequest) -> Scenario:
 
 
 def test_every_reading_is_in_one_batch_of_its_gateway(played: Scenario) -> None:
+    assert set(gateways_of(played.reports)) == {report.gateway for report in played.reports}
     for gateway in gateways_of(played.reports):
         posted = [r for batch in batches_of(played.reports, gateway) for r in batch.readings]
         assert posted == [report.reading for report in played.reports if report.gateway == gateway]

@@ -63,6 +63,7 @@ def test_of_a_moment_only_what_tells_of_epochs_up_to_it_counts(post: Post, walke
     t = START_T + 5.0
     found = evidence(post, walked, node="ff1", t=t)
     assert t - 1.0 <= found.t <= t
+    assert found.held
     assert all(measurement.t <= t for measurement in found.held + found.rejected)
 
 
@@ -86,16 +87,13 @@ def test_asking_again_costs_nothing(post: Post, walked: str) -> None:
         assert time.monotonic() - began < 0.5
 
 
-def test_the_advice_is_sorted_and_never_makes_it_worse(post: Post, walked: str) -> None:
+def test_the_advice_names_what_would_help(post: Post, walked: str) -> None:
     status, body = get(post, walked, "advice", node="ff1")
     assert status == 200, body
     found = msgspec.json.decode(body, type=Advice)
     assert found.node == "ff1"
-    assert found.sigma_m > 0.0
-    gains = [suggestion.gain for suggestion in found.suggestions]
-    assert gains == sorted(gains, reverse=True)
-    assert all(0.0 <= suggestion.gain <= 1.0 for suggestion in found.suggestions)
-    assert all(suggestion.sigma_m <= found.sigma_m for suggestion in found.suggestions)
+    assert found.suggestions
+    assert found.suggestions[0].sigma_m < found.sigma_m
 
 
 @pytest.mark.parametrize("what", ["evidence", "advice"])

@@ -1,4 +1,4 @@
-"""The default tracker: order of arrival, restarts, and what it says of nodes."""
+"""The default tracker: order of arrival, and what it says of nodes."""
 
 import random
 
@@ -73,21 +73,6 @@ def test_readings_beyond_the_lag_are_counted_and_noticed_but_not_fused() -> None
     assert tracker.estimates() == before
     assert tracker.counts()["too_late"] == 1
     assert [n.code for n in tracker.take_notices()] == ["too_late"]
-
-
-@pytest.mark.parametrize("cut", [1, 40, 120, 200])
-def test_a_tracker_restored_from_a_snapshot_goes_on_to_the_last_bit(cut: int) -> None:
-    whole = folded(WALK[:cut])
-    restored = KirchhoffTracker.restore(whole.snapshot())
-    assert restored.take_notices() == whole.take_notices()
-    late = Range(t=max(WALK[cut].t - 3.0, 0.0), a="ff1", b="anchor", range_m=9.0)
-    for tracker in (whole, restored):
-        tracker.fold(WALK[cut:])
-        tracker.fold([late])
-    assert restored.estimates() == whole.estimates()
-    assert restored.counts() == whole.counts()
-    assert restored.take_notices() == whole.take_notices()
-    assert restored.snapshot() == whole.snapshot()
 
 
 def test_the_walk_ends_where_it_ended_and_the_unknown_beacon_is_found() -> None:
