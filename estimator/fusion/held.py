@@ -6,7 +6,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.calibration import of_technology
+from estimator.fusion.calibration import bias_sigma_m, scale_sigma
 from estimator.fusion.introduce import place
 from estimator.fusion.motion import offset_at
 from estimator.fusion.nodes import NodeState
@@ -217,8 +217,8 @@ def technology_states(state: FusionState, technology: str) -> Variable:
     """The block of scale and bias of a ranging technology, added when first used."""
     states = Variable("range", technology)
     if states not in state.graph:
-        known = of_technology(technology).information(state.uncalibrated.get(technology, 0.0))
-        state.graph.add_node(states, (0.0, 0.0), known**-0.5)
+        scale = scale_sigma(state.uncalibrated.get(technology, 0.0))
+        state.graph.add_node(states, (0.0, 0.0), (scale, bias_sigma_m(technology)))
     return states
 
 

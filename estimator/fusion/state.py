@@ -39,7 +39,7 @@ class FusionState:
         refreshed_t: end of the tick at which the window was last solved.
         window_t: epoch of the window's first keyframe.
         prior: what is known from before the window.
-        uncalibrated: probability that a ranging technology has a large scale or bias.
+        uncalibrated: probability that a ranging technology is not calibrated, where it reaches odometry.
         ledger: what has been fused, as tables.
         owners: the node of each number in the ledger.
         sources: the technologies of the ledger's readings.

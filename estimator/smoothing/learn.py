@@ -9,7 +9,7 @@ what the radio does not see of a step stays in V.
 import numpy as np
 from msgspec.structs import replace
 
-from estimator.fusion.calibration import TRUSTED, of_technology, uncalibrated
+from estimator.fusion.calibration import scale_sigma, uncalibrated
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.solve import Problem, Solved
@@ -100,10 +100,9 @@ def calibrate(state: FusionState, problem: Problem, x: Array, border: Array) -> 
     known = set() if problem.prior is None else set(problem.prior.keys)
     for key, start in problem.layout.technologies.items():
         if key[0] == "range" and key not in known and problem.rows.by_units(key[1]):
-            name, own = state.sources[key[1]], slice(start, start + 2)
-            share = state.uncalibrated[name]
-            kinds, estimate = of_technology(name), x[size + start : size + start + 2]
-            told = uncalibrated(kinds, share, estimate, border[own, own])
+            name = state.sources[key[1]]
+            sigma = scale_sigma(state.uncalibrated.get(name, 0.0))
+            told = uncalibrated(sigma, float(x[size + start]), float(border[start, start]))
             state.uncalibrated[name] = told
             # Another prior bends everything: what follows from it is not left for later.
-            state.due = state.due or (told < TRUSTED) != (share < TRUSTED)
+            state.due = state.due or scale_sigma(told) != sigma

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.fusion import physics
-from estimator.fusion.calibration import of_technology
+from estimator.fusion.calibration import bias_sigma_m, scale_sigma
 from estimator.fusion.prior import Key
 from estimator.graph.dense import Array, Indices
 from estimator.smoothing.layout import Layout
@@ -71,7 +71,8 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
         if key[0] == "range":
             name = state.sources[key[1]]
             mean += [0.0, 0.0]
-            known_by += of_technology(name).information(state.uncalibrated.get(name, 0.0)).tolist()
+            scale = scale_sigma(state.uncalibrated.get(name, 0.0))
+            known_by += [scale**-2, bias_sigma_m(name) ** -2]
         else:
             mean += [physics.RSSI_POWER_DBM, physics.RSSI_EXPONENT]
             known_by += [physics.RSSI_POWER_SIGMA_DB**-2, physics.RSSI_EXPONENT_SIGMA**-2]

@@ -1,48 +1,58 @@
-"""Whether a ranging technology is calibrated, from what the readings alone say of its scale and bias."""
+"""Whether a ranging technology is calibrated, from what the readings alone say of its scale."""
+
+import math
 
 import numpy as np
 import pytest
 
-from estimator.fusion.calibration import Kinds, of_technology, uncalibrated
-from estimator.graph.dense import Array
+from estimator.fusion import physics
+from estimator.fusion.calibration import TRUSTED, scale_sigma, uncalibrated
 
-TECHNOLOGIES = ["uwb", "ultrasound", "rtt", "a radio never heard of"]
-SHARES = [0.0, 0.1, 0.5, 0.9, 1.0]
-
-
-def judged(kinds: Kinds, share: float, truth: list[float], data: Array) -> float:
-    """What is said of a technology when readings with information `data` (n × n) tell the truth."""
-    covariance = np.asarray(np.linalg.inv(np.diag(kinds.information(share)) + data), dtype=np.float64)
-    return uncalibrated(kinds, share, covariance @ data @ np.array(truth), covariance)
+SIGMAS = [scale_sigma(0.0), 0.03, scale_sigma(1.0)]
+"""Of priors that an estimate may have been made with."""
 
 
-@pytest.mark.parametrize("share", SHARES)
-@pytest.mark.parametrize("technology", TECHNOLOGIES)
-def test_a_scale_of_seven_percent_seen_sharply_is_not_calibrated(technology: str, share: float) -> None:
-    for data in (np.diag([0.005**-2, 0.0]), np.diag([0.005**-2, 0.1**-2])):
-        assert judged(of_technology(technology), share, [0.07, 0.0], data) > 0.99
+def judged(sigma: float, truth: float, alone: float) -> float:
+    """What is said of a technology whose scale is read as `truth` with standard deviation `alone`."""
+    variance = 1.0 / (sigma**-2 + alone**-2)
+    return uncalibrated(sigma, truth * variance / alone**2, variance)
 
 
-@pytest.mark.parametrize("share", SHARES)
-@pytest.mark.parametrize("technology", TECHNOLOGIES)
-def test_a_scale_of_three_per_mille_is_calibrated(technology: str, share: float) -> None:
-    for data in (np.diag([0.002**-2, 0.0]), np.diag([0.002**-2, 0.05**-2])):
-        assert judged(of_technology(technology), share, [0.003, 0.0], data) < 0.2
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_seven_percent_seen_sharply_are_not_calibrated(sigma: float) -> None:
+    assert judged(sigma, 0.07, 0.005) > 0.99
+    assert judged(sigma, -0.07, 0.005) > 0.99
 
 
-@pytest.mark.parametrize("share", SHARES)
-@pytest.mark.parametrize("technology", TECHNOLOGIES)
-def test_where_nothing_is_known_the_usual_share_stays(technology: str, share: float) -> None:
-    nothing = judged(of_technology(technology), share, [0.0, 0.0], np.zeros((2, 2)))
-    assert nothing == pytest.approx(of_technology(technology).usual)
-    little = judged(of_technology(technology), share, [0.5, 3.0], np.diag([10.0**-2, 100.0**-2]))
-    assert little == pytest.approx(of_technology(technology).usual, rel=0.01)
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_what_a_units_own_scale_may_explain_is_no_reason_for_distrust(sigma: float) -> None:
+    """Odometry tells a scale to 2 %, which is what boots differ by."""
+    assert judged(sigma, 0.003, 0.002) < 0.1
+    assert judged(sigma, 0.02, physics.SCALE_SIGMA) < TRUSTED
+    assert judged(sigma, 0.07, physics.SCALE_SIGMA) > TRUSTED
+
+
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_where_nothing_is_known_the_usual_share_stays(sigma: float) -> None:
+    assert uncalibrated(sigma, 0.0, sigma**2) == physics.UNCALIBRATED
+    assert judged(sigma, 0.5, 10.0) == pytest.approx(physics.UNCALIBRATED, rel=0.01)
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_the_answer_does_not_depend_on_the_share_that_the_estimate_was_made_with(seed: int) -> None:
+def test_the_answer_does_not_depend_on_the_prior_that_the_estimate_was_made_with(seed: int) -> None:
     chance = np.random.default_rng(seed)
-    seen = chance.normal(0.0, 1.0, (3, 2)) / np.array([0.02, 0.2])
-    truth = [float(chance.normal(0.0, 0.03)), float(chance.normal(0.0, 0.3))]
-    told = [judged(of_technology("uwb"), share, truth, seen.T @ seen) for share in SHARES]
-    assert told == pytest.approx([told[0]] * len(SHARES), rel=1e-6)
+    truth, alone = float(chance.normal(0.0, 0.05)), float(chance.uniform(0.002, 0.05))
+    told = [judged(sigma, truth, alone) for sigma in SIGMAS]
+    assert told == pytest.approx([told[0]] * len(told), rel=1e-6)
+
+
+def test_the_odds_are_those_of_two_gaussians() -> None:
+    """Against Bayes' rule written out with densities."""
+
+    def density(value: float, sigma: float) -> float:
+        return math.exp(-0.5 * (value / sigma) ** 2) / sigma
+
+    said, alone = 0.04, 0.02
+    wide = physics.UNCALIBRATED * density(said, math.hypot(alone, physics.RANGE_SCALE_WIDE))
+    narrow = (1.0 - physics.UNCALIBRATED) * density(said, math.hypot(alone, physics.RANGE_SCALE_SIGMA))
+    assert judged(0.1, said, alone) == pytest.approx(wide / (wide + narrow), rel=1e-9)
