@@ -1,6 +1,6 @@
 """Readings as they are held against the graph: fixes and heights against one node, pairs between two."""
 
-from typing import Literal
+from typing import NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
@@ -8,11 +8,11 @@ from msgspec.structs import replace
 from estimator.fusion import physics
 from estimator.fusion.calibration import bias_sigma_m, scale_sigma
 from estimator.fusion.introduce import place
-from estimator.fusion.motion import offset_at
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.noise import Link, link_sigma
-from estimator.fusion.rows import End, Linear, Pair
+from estimator.fusion.rows import BEARING, RANGE, RSSI, Row, Single
 from estimator.fusion.state import FusionState
+from estimator.fusion.way import Way
 from estimator.graph.robust import Mixture
 from estimator.graph.variable import Variable
 from estimator.measurements.altitude import Altitude, Pressure, height_above
@@ -25,8 +25,8 @@ SENT = "sent"
 """Owner of the path-loss states of radios that tell the power they send with; "" for those that do not."""
 
 
-def fix(state: FusionState, reading: Position) -> list[Linear]:
-    """Rows of an absolute fix; the first one of a node decides where it begins."""
+def fix(state: FusionState, reading: Position) -> list[Single]:
+    """What an absolute fix says; the first one of a node decides where it begins."""
     position = reading.position_m
     if position is None and reading.wgs84 is not None:
         if state.origin_wgs84 is None:
@@ -43,19 +43,17 @@ def fix(state: FusionState, reading: Position) -> list[Linear]:
         place(state, node, reading.t, position, sigma)
         state.count("fused")
         return []
-    offset = offset_at(state, node, reading.t)
-    floor = physics.SIGMA_FLOOR_M
     state.count("fused")
+    singles, offset = [], Way(state, node).offset(reading.t)
     for i in range(3):
-        _enter_single(state, node, reading.t, i, position[i], max(sigma[i], floor), physics.FIX_NOISE)
-    return [
-        Linear(node.position, i, position[i] - float(offset[i]), max(sigma[i], floor), physics.FIX_NOISE)
-        for i in range(3)
-    ]
+        spread = max(sigma[i], physics.SIGMA_FLOOR_M)
+        _enter_single(state, node, reading.t, i, position[i], spread, physics.FIX_NOISE)
+        singles.append(Single(node.position, i, position[i] - offset[i], spread, physics.FIX_NOISE))
+    return singles
 
 
-def height(state: FusionState, reading: Altitude | Pressure) -> list[Linear]:
-    """The row of a height, or of an air pressure over the base's own."""
+def height(state: FusionState, reading: Altitude | Pressure) -> list[Single]:
+    """What a height says, or of an air pressure over the base's own."""
     node = state.nodes.get(reading.node)
     if isinstance(reading, Pressure) and node is not None and node.role == "base":
         state.reference_pa = reading.pressure_pa
@@ -76,9 +74,10 @@ def height(state: FusionState, reading: Altitude | Pressure) -> list[Linear]:
     if isinstance(reading, Pressure):
         state.nodes[node.node] = replace(node, pressure_t=reading.t)
     state.count("fused")
-    _enter_single(state, node, reading.t, 2, up, max(sigma, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE)
-    up -= float(offset_at(state, node, reading.t)[2])
-    return [Linear(node.position, 2, up, max(sigma, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE)]
+    sigma, noise = max(sigma, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE
+    _enter_single(state, node, reading.t, 2, up, sigma, noise)
+    up -= Way(state, node).offset(reading.t)[2]
+    return [Single(node.position, 2, up, sigma, noise)]
 
 
 def _enter_single(
@@ -111,66 +110,138 @@ def _takes(state: FusionState, node: NodeState, t: float, what: str) -> bool:
     return True
 
 
-def end_of(state: FusionState, node: NodeState, t: float) -> End:
-    """A decided node as one end of a reading at `t`."""
-    if node.mode == "fixed" and node.place_m is not None:
-        return End(None, node.place_m)
-    east, north, up = offset_at(state, node, t).tolist()
-    return End(node.position, (east, north, up))
+class Told(NamedTuple):
+    """What a range or RSSI says.
+
+    Attributes:
+        kind: `RANGE` or `RSSI`.
+        value: range (m) or power (dBm).
+        sigma: claimed or assumed standard deviation.
+        source: the technology that its noise is learned for.
+        owner: owner of that technology's states.
+        sent: power that was sent (dBm); 0 for ranges, and where it is not told.
+    """
+
+    kind: int
+    value: float
+    sigma: float
+    source: str
+    owner: str
+    sent: float
 
 
-def pair(state: FusionState, a: NodeState, b: NodeState, reading: Range | Rssi | Bearing) -> Pair | None:
-    """A reading between two decided nodes; None where a bearing has nothing to be counted from."""
-    ends = end_of(state, a, reading.t), end_of(state, b, reading.t)
-    if isinstance(reading, Bearing):
-        extra, heading = None, 0.0
+class Technology(NamedTuple):
+    """What is known of a technology in this tick.
+
+    Attributes:
+        start: first row of its states.
+        number: its number in the ledger.
+        noise: how its readings scatter.
+        factor: learned standard deviation over the claimed or assumed one.
+        shared: share of the variance that successive readings on one link have in common.
+    """
+
+    start: int
+    number: int
+    noise: Mixture
+    factor: float
+    shared: float
+
+
+class Pairs:
+    """The readings between two nodes that are held against the graph together.
+
+    Nothing may change the nodes' places or the learned noise meanwhile.
+
+    Attributes:
+        rows: of those between decided nodes.
+        links: key of each link among them.
+    """
+
+    def __init__(self, state: FusionState) -> None:
+        self._state = state
+        self.rows: list[Row] = []
+        self.links: dict[str, int] = {}
+        self._ways: dict[str, Way] = {}
+        self._technologies: dict[str, Technology] = {}
+
+    def take(self, a: NodeState, b: NodeState, reading: Range | Rssi | Bearing) -> None:
+        """Hold a reading between two decided nodes, and enter it into the ledger."""
+        made = self._bearing(a, b, reading) if isinstance(reading, Bearing) else self._radio(a, b, reading)
+        if made is not None:
+            self.rows.append(made)
+            self._state.counts["fused"] += 1
+
+    def _radio(self, a: NodeState, b: NodeState, reading: Range | Rssi) -> Row:
+        told = told_by(reading)
+        known = self._technologies.get(told.source) or self._technology(told)
+        link, key = enter(self._state, a, b, reading.t, told)
+        from_a, from_b = self._way(a), self._way(b)
+        return Row(
+            told.kind,
+            from_a.start,
+            told.value,
+            link_sigma(known.factor, known.shared, told.sigma, link.alike),
+            *known.noise,
+            told.sigma,
+            from_b.start,
+            known.start,
+            told.sent,
+            known.number,
+            self.links.setdefault(key, len(self.links)),
+            *from_a.offset(reading.t),
+            *from_b.offset(reading.t),
+        )
+
+    def _bearing(self, a: NodeState, b: NodeState, reading: Bearing) -> Row | None:
+        state, extra, heading = self._state, -1, 0.0
         if reading.frame == "body":
-            extra = a.unit if a.mode == "unit" else None
             known = a.unit_heading_rad if a.mode == "unit" else a.heading_rad
             if known is None or a.mode == "free":
                 text = f"{a.node} has no heading: its bearings in the body frame are set aside"
                 state.say("not_fused", reading.t, a.node, text, once=f"bearing from {a.node}")
                 state.count("not_fused")
                 return None
-            heading = known
+            extra, heading = state.graph.starts[a.unit] if a.mode == "unit" else -1, known
         sigma = max(reading.sigma_rad or physics.BEARING_SIGMA_RAD, physics.HEADING_FLOOR_RAD)
-        noise = physics.BEARING_NOISE
         frame = 3.0 if reading.frame == "body" else 2.0
         row = (a.index, b.index, reading.bearing_rad, sigma, state.source(""), heading, 1.0, -1.0)
         state.ledger.add("pairs", reading.t, frame, *row)
-        return Pair("bearing", *ends, extra, reading.bearing_rad, sigma, noise, "", sigma, "", heading)
-    value, sigma, technology, sent = measured(reading)
-    kind: Literal["range", "rssi"] = "range" if isinstance(reading, Range) else "rssi"
-    made = pair_of(state, kind, ends, value, sigma, technology)
-    link, name = enter(state, a, b, reading)
-    sigma = link_sigma(state.learned(made.source), sigma, link.alike)
-    return made._replace(sigma=sigma, link=name, constant=sent)
+        from_a, from_b, t = self._way(a), self._way(b), reading.t
+        told = (reading.bearing_rad, sigma, *physics.BEARING_NOISE, sigma)
+        at = (*from_a.offset(t), *from_b.offset(t))
+        return Row(BEARING, from_a.start, *told, from_b.start, extra, heading, -1, -1, *at)
+
+    def _way(self, node: NodeState) -> Way:
+        found = self._ways.get(node.node)
+        if found is None:
+            found = self._ways[node.node] = Way(self._state, node)
+        return found
+
+    def _technology(self, told: Told) -> Technology:
+        state, ranged = self._state, told.kind == RANGE
+        states = technology_states(state, told.owner) if ranged else path_loss_states(state, told.owner)
+        learned, usual = state.learned(told.source), physics.RANGE_NOISE if ranged else physics.RSSI_NOISE
+        found = self._technologies[told.source] = Technology(
+            state.graph.starts[states],
+            state.source(told.source),
+            usual._replace(outliers=learned.outliers(usual.outliers)),
+            learned.factor,
+            learned.shared,
+        )
+        return found
 
 
-def enter(state: FusionState, a: NodeState, b: NodeState, reading: Range | Rssi) -> tuple[Link, str]:
-    """Enter a range or RSSI into the ledger, and follow its link."""
-    value, sigma, technology, sent = measured(reading)
-    ranged = isinstance(reading, Range)
-    source = technology if ranged else f"rssi {technology}"
-    key = f"{source} {min(a.node, b.node)} {max(a.node, b.node)}"
-    before, way = state.links.get(key), _way_m(a, reading.t) + _way_m(b, reading.t)
-    number = len(state.links) if before is None else before.number
-    link = Link(reading.t, way, number) if before is None else before.next(reading.t, way)
-    state.links[key] = link
-    if ranged and "unit" in (a.mode, b.mode):
-        state.uncalibrated.setdefault(source, physics.UNCALIBRATED)
-    row = (
-        0.0 if ranged else 1.0,
-        a.index,
-        b.index,
-        value,
-        sigma,
-        state.source(source),
-        sent,
-        link.alike,
-        number,
-    )
-    state.ledger.add("pairs", reading.t, *row)
+def enter(state: FusionState, a: NodeState, b: NodeState, t: float, told: Told) -> tuple[Link, str]:
+    """Enter a range or RSSI between two nodes at `t` into the ledger, and follow its link."""
+    key = f"{told.source} {a.node} {b.node}" if a.node < b.node else f"{told.source} {b.node} {a.node}"
+    links, way = state.links, _way_m(a, t) + _way_m(b, t)
+    before = links.get(key)
+    link = links[key] = Link(t, way, len(links)) if before is None else before.next(t, way)
+    if told.kind == RANGE and "unit" in (a.mode, b.mode):
+        state.uncalibrated.setdefault(told.source, physics.UNCALIBRATED)
+    row = (told.value, told.sigma, state.source(told.source), told.sent, link.alike, link.number)
+    state.ledger.add("pairs", t, 0.0 if told.kind == RANGE else 1.0, a.index, b.index, *row)
     return link, key
 
 
@@ -183,34 +254,15 @@ def _way_m(node: NodeState, t: float) -> float:
     return node.way_m if node.mode != "free" else physics.FREE_WAY_MPS * t
 
 
-def pair_of(
-    state: FusionState,
-    kind: Literal["range", "rssi"],
-    ends: tuple[End, End],
-    value: float,
-    sigma: float,
-    technology: str,
-) -> Pair:
-    """A range or RSSI between two ends, with its technology's states in the graph and its learned noise."""
-    source = technology if kind == "range" else f"rssi {technology}"
-    states = technology_states(state, technology) if kind == "range" else path_loss_states(state, technology)
-    noise = physics.RANGE_NOISE if kind == "range" else physics.RSSI_NOISE
-    known = state.learned(source)
-    noise = noise._replace(outliers=known.outliers(noise.outliers))
-    return Pair(
-        kind, *ends, states, value, max(sigma * known.factor, physics.SIGMA_FLOOR_M), noise, source, sigma
-    )
-
-
-def measured(reading: Range | Rssi) -> tuple[float, float, str, float]:
-    """Value, claimed or assumed sigma, owner of the technology's states, and sent power of a reading."""
+def told_by(reading: Range | Rssi) -> Told:
+    """What a range or RSSI says."""
     if isinstance(reading, Range):
         technology = reading.technology or "unnamed"
         sigma = reading.sigma_m or physics.RANGE_SIGMA_M.get(technology, physics.RANGE_SIGMA_OTHER_M)
-        return reading.range_m, max(sigma, physics.SIGMA_FLOOR_M), technology, 0.0
+        return Told(RANGE, reading.range_m, max(sigma, physics.SIGMA_FLOOR_M), technology, technology, 0.0)
     if reading.tx_dbm is None:
-        return reading.dbm, physics.RSSI_SIGMA_DB, "", 0.0
-    return reading.dbm, physics.RSSI_SIGMA_DB, SENT, reading.tx_dbm
+        return Told(RSSI, reading.dbm, physics.RSSI_SIGMA_DB, "rssi ", "", 0.0)
+    return Told(RSSI, reading.dbm, physics.RSSI_SIGMA_DB, f"rssi {SENT}", SENT, reading.tx_dbm)
 
 
 def technology_states(state: FusionState, technology: str) -> Variable:

@@ -1,26 +1,33 @@
 """How nodes with a PDR unit move between ticks: by its displacements."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
 
+from estimator.estimate import Vector3
 from estimator.fusion import physics
 from estimator.fusion.introduce import attach_unit, begin_at_base, waits_for_ranges
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.physics import NOISES
-from estimator.fusion.rows import Linear
+from estimator.fusion.rows import Single
 from estimator.fusion.state import FusionState
-from estimator.graph.dense import Array
+from estimator.fusion.way import Marks
 from estimator.measurements.displacement import Displacement, move
 from estimator.measurements.node import MOVING_ROLES
 
 TRAIL_S = 4.0
 FIRST_DURATION_S = 1.0
-NOISE_FLOOR = np.array([1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12])
+NOISE_FLOOR = (1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12)
 LONGEST_S = 600.0
 """Noise stops growing with the time between two reports there: nobody is followed over longer silences."""
+
+AXES = np.arange(6)
+Noise = tuple[float, float, float, float, float, float]
+"""Variances of east, north, up (m²), ψ (rad²), β (rad²/s²) and s."""
+NOTHING = (0.0,) * 6
 
 
 class Increment(NamedTuple):
@@ -28,18 +35,18 @@ class Increment(NamedTuple):
 
     Attributes:
         node: the unit after it.
-        delta_m: displacement in the unit's frame, 3 (m).
+        delta_m: displacement in the unit's frame (m).
         duration_s: time that it took since the unit's last epoch (s).
-        noise: variances of position, ψ, β and s that it adds, 6.
+        noise: variances that it adds.
         turn: the gyro bias that it shows, if the unit stood still (ZARU).
         too_fast: nobody moves so far in its time.
     """
 
     node: NodeState
-    delta_m: Array
+    delta_m: Vector3
     duration_s: float
-    noise: Array
-    turn: Linear | None
+    noise: Noise
+    turn: Single | None
     too_fast: bool
 
 
@@ -47,20 +54,34 @@ class Step:
     """What one unit has moved in one tick.
 
     Attributes:
-        node: the unit, before the step.
-        delta_m: displacement in the unit's frame, 3 (m).
+        node: the unit, after the step.
+        delta_m: displacement in the unit's frame (m).
         duration_s: time that it took (s).
-        noise: variances of position, ψ, β and s that it adds, 6.
+        noise: variances that it adds.
     """
 
     def __init__(self, node: NodeState) -> None:
         self.node = node
-        self.delta_m: Array = np.zeros(3)
+        self.delta_m: Vector3 = (0.0, 0.0, 0.0)
         self.duration_s = 0.0
-        self.noise: Array = np.zeros(6)
+        self.noise: Noise = NOTHING
+
+    def add(self, increment: Increment) -> None:
+        """Take in what one displacement adds."""
+        self.node = increment.node
+        (e, n, u), (more_e, more_n, more_u) = self.delta_m, increment.delta_m
+        self.delta_m = e + more_e, n + more_n, u + more_u
+        self.duration_s += increment.duration_s
+        self.noise = _sum(self.noise, increment.noise)
 
 
-def move_units(state: FusionState, readings: Sequence[Displacement], turns: list[Linear]) -> None:
+def _sum(one: Noise, other: Noise) -> Noise:
+    e, n, u, psi, beta, scale = one
+    more_e, more_n, more_u, more_psi, more_beta, more_scale = other
+    return e + more_e, n + more_n, u + more_u, psi + more_psi, beta + more_beta, scale + more_scale
+
+
+def move_units(state: FusionState, readings: Sequence[Displacement], turns: list[Single]) -> None:
     """Fold a tick's displacements: one transition for all units at once, and ZARU where they stand still.
 
     Args:
@@ -90,7 +111,7 @@ def move_units(state: FusionState, readings: Sequence[Displacement], turns: list
             step = steps[node.node] = Step(state.nodes[node.node])
         if _extend(state, step, reading, turns):
             state.count("fused")
-    moving = [s for s in steps.values() if s.duration_s > 0.0 or s.noise.any()]
+    moving = [s for s in steps.values() if s.duration_s > 0.0 or any(s.noise)]
     if moving:
         _advance_units(state, moving)
     for step in steps.values():
@@ -103,7 +124,7 @@ def _start_of(reading: Displacement, pose_t: float | None) -> float:
     return reading.t - FIRST_DURATION_S if pose_t is None else pose_t
 
 
-def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[Linear]) -> bool:
+def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[Single]) -> bool:
     node = step.node
     increment = increment_of(node, reading)
     if increment is None:
@@ -112,7 +133,7 @@ def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[L
         state.count("not_fused")
         return False
     if increment.too_fast:
-        length = float(np.linalg.norm(increment.delta_m))
+        length = math.hypot(*increment.delta_m)
         text = f"{node.node} reported {length:.1f} m at once, faster than anyone runs"
         state.say("outlier", reading.t, node.node, text)
         state.count("outlier")
@@ -123,13 +144,10 @@ def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[L
         )
         turns.append(told)
     given = float(reading.sigma_m is not None)
-    variances = increment.noise[[0, 2, 3, 4, 5]].tolist()
-    delta = increment.delta_m.tolist()
-    state.ledger.add("steps", reading.t, node.index, node.pose_t, *delta, *variances, given)
-    step.delta_m = step.delta_m + increment.delta_m
-    step.duration_s += increment.duration_s
-    step.noise = step.noise + increment.noise
-    step.node = increment.node
+    across, _, up, turn, bias, scale = increment.noise
+    variances = (across, up, turn, bias, scale, given)
+    state.ledger.add("steps", reading.t, node.index, node.pose_t, *increment.delta_m, *variances)
+    step.add(increment)
     return True
 
 
@@ -138,53 +156,60 @@ def increment_of(node: NodeState, reading: Displacement) -> Increment | None:
     if reading.t < node.pose_t or (node.unit_t is not None and reading.t <= node.unit_t):
         return None
     start = _start_of(reading, node.pose_t if node.unit_t is None else node.unit_t)
-    delta = np.array(reading.delta_m)
+    e, n, u = reading.delta_m
     duration = min(reading.t - node.pose_t, LONGEST_S)
     own = max(reading.t - start, 0.0)
-    length = float(np.sqrt(delta @ delta))
-    noise = np.zeros(6)
+    length = math.sqrt(e * e + n * n + u * u)
+    across = up = 0.0
     if start < node.pose_t and node.unit_t is not None:
         share = duration / own
-        noise[:3] += (0.5 * share * (1.0 - share) * length) ** 2
-        delta, length, own = delta * share, length * share, duration
+        across = up = (0.5 * share * (1.0 - share) * length) ** 2
+        e, n, u, length, own = e * share, n * share, u * share, length * share, duration
     elif start > node.pose_t:
-        noise[:3] += (physics.GAP_MPS * min(start - node.pose_t, LONGEST_S)) ** 2
-        noise[2] *= 0.1
+        across = (physics.GAP_MPS * min(start - node.pose_t, LONGEST_S)) ** 2
+        up = 0.1 * across
     too_fast = length > physics.FASTEST_MPS * max(own, physics.TICK_S)
     if too_fast:
-        noise[:3] += length**2
+        across, up = across + length**2, up + length**2
     still = own > 0.0 and length < physics.STILL_MPS * own and start <= node.pose_t
-    trail = node.trail or ((node.pose_t, 0.0, 0.0, 0.0),)
-    e, n, u = (np.array(trail[-1][1:]) + delta).tolist()
-    oldest = next((i for i, mark in enumerate(trail) if mark[0] >= reading.t - TRAIL_S), len(trail))
+    stood, turn = _standing(node, reading, duration) if still else ((), None)
     after = replace(
         node,
         t=max(node.t, reading.t),
         pose_t=reading.t,
         unit_t=reading.t,
         unit_heading_rad=reading.heading_rad,
-        speed_mps=float(np.hypot(delta[0], delta[1])) / own if own > 0.0 else node.speed_mps,
-        trail=(*trail[max(oldest - 1, 0) :], (reading.t, e, n, u)),
+        speed_mps=math.hypot(e, n) / own if own > 0.0 else node.speed_mps,
+        trail=_trail(node, reading.t, e, n, u),
+        still=stood,
         way_m=node.way_m + length,
     )
-    stood, turn = _standing(node, reading, duration) if still else ((), None)
-    after = replace(after, still=stood)
-    noise += _walk_noise(reading.sigma_m, length, duration)
-    return Increment(after, delta, duration, noise, turn, too_fast)
+    noise = _sum((across, across, up, 0.0, 0.0, 0.0), _walk_noise(reading.sigma_m, length, duration))
+    return Increment(after, (e, n, u), duration, noise, turn, too_fast)
 
 
-def _walk_noise(sigma_m: float | None, length: float, duration: float) -> Array:
+def _trail(node: NodeState, t: float, e: float, n: float, u: float) -> Marks:
+    """A unit's trail with one displacement (m) more, without what is longer ago than `TRAIL_S`."""
+    trail = node.trail or ((node.pose_t, 0.0, 0.0, 0.0),)
+    _, last_e, last_n, last_u = trail[-1]
+    oldest = 0
+    while oldest < len(trail) and trail[oldest][0] < t - TRAIL_S:
+        oldest += 1
+    return *trail[max(oldest - 1, 0) :], (t, last_e + e, last_n + n, last_u + u)
+
+
+def _walk_noise(sigma_m: float | None, length: float, duration: float) -> Noise:
     step = physics.WALK_M_PER_ROOT_M**2 * length if sigma_m is None else sigma_m**2
     position = step + physics.STAND_M_PER_ROOT_S**2 * duration + physics.DISPLACEMENT_FLOOR_M**2
     heading = physics.HEADING_WALK_RAD_PER_ROOT_M**2 * length + physics.GYRO_WALK_RAD_PER_ROOT_S**2 * duration
     bias = physics.BIAS_WALK_RADPS_PER_ROOT_S**2 * duration
     scale = physics.SCALE_WALK_PER_ROOT_S**2 * duration
-    return np.array([position, position, position, heading, bias, scale])
+    return position, position, position, heading, bias, scale
 
 
 def _standing(
     node: NodeState, reading: Displacement, duration: float
-) -> tuple[tuple[tuple[float, float], ...], Linear | None]:
+) -> tuple[tuple[tuple[float, float], ...], Single | None]:
     """ZARU (estimation.md, point 2): the true heading stays, so what the unit turns meanwhile is −β Δt.
 
     Reported headings are noisy, and their noise is not told: β is the slope of a line through those of some
@@ -210,44 +235,41 @@ def _standing(
     scatter = heading - heading.mean() - slope * t
     variance = float(scatter @ scatter) / (len(still) - 4) / spread
     sigma = float(np.sqrt(variance + physics.GYRO_WALK_RAD_PER_ROOT_S**2 / lasted))
-    return still[-1:], Linear(node.unit, 1, -slope, sigma, physics.TURN_NOISE)
+    return still[-1:], Single(node.unit, 1, -slope, sigma, physics.TURN_NOISE)
 
 
 def _advance_units(state: FusionState, steps: Sequence[Step]) -> None:
-    starts = [(state.graph.rows(s.node.position).start, state.graph.rows(s.node.unit).start) for s in steps]
-    rows = np.array([[p, p + 1, p + 2, u, u + 1, u + 2] for p, u in starts])
-    before = state.graph.reference[rows]
-    moved = move(before, np.array([s.delta_m for s in steps]), np.array([s.duration_s for s in steps]))
-    noise = np.array([np.diag(s.noise + NOISE_FLOOR) for s in steps])
+    starts = state.graph.starts
+    rows = np.array([(starts[s.node.position], starts[s.node.unit]) for s in steps]).repeat(3, axis=1)
+    rows += AXES % 3
+    delta, duration = np.array([s.delta_m for s in steps]), np.array([s.duration_s for s in steps])
+    moved = move(state.graph.reference[rows], delta, duration)
+    noise = np.zeros((len(steps), 6, 6))
+    noise[:, AXES, AXES] = [_sum(s.noise, NOISE_FLOOR) for s in steps]
     state.graph.advance(rows, moved.state, moved.transition, noise)
 
 
-def drift_unit(state: FusionState, node: NodeState, t: float) -> None:
-    """A unit has not reported up to `t`, and something else is to be held against its position there.
+def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
+    """Units have not reported up to an epoch at which something else is to be held against their position.
 
-    Its bearer may have stood or walked; a random walk of 1 m per root second covers both. A displacement that
-    comes later counts for the part of its time that is left.
+    Their bearers may have stood or walked; a random walk of 1 m per root second covers both. A displacement
+    that comes later counts for the part of its time that is left.
+
+    Args:
+        state: the fusion.
+        until: the epoch, by unit.
     """
-    duration = min(t - node.pose_t, LONGEST_S)
-    rows = np.arange(3) + state.graph.rows(node.position).start
-    wander = physics.SILENT_M_PER_ROOT_S**2 * duration
-    noise = np.diag([wander, wander, 0.1 * wander])
-    state.graph.advance(rows[None], state.graph.reference[rows][None], np.eye(3)[None], noise[None])
-    state.ledger.add(
-        "steps", t, node.index, node.pose_t, 0.0, 0.0, 0.0, wander, 0.1 * wander, 0.0, 0.0, 0.0, 1.0
-    )
-    state.nodes[node.node] = replace(node, pose_t=t, trail=())
-
-
-def offset_at(state: FusionState, node: NodeState, t: float) -> Array:
-    """Where a moving node stood at `t`, from its present position, 3 (m): back along its trail."""
-    if node.mode == "free":
-        return np.asarray(state.graph.value(node.velocity) * (t - node.pose_t))
-    if node.mode != "unit" or t >= node.pose_t or len(node.trail) < 2:
-        return np.zeros(3)
-    marks = np.array(node.trail)
-    then = np.array([np.interp(t, marks[:, 0], marks[:, axis]) for axis in (1, 2, 3)])
-    psi, _, scale = state.graph.value(node.unit).tolist()
-    e, n, u = ((then - marks[-1, 1:]) * (1.0 + scale)).tolist()
-    cosine, sine = np.cos(psi), np.sin(psi)
-    return np.array([cosine * e - sine * n, sine * e + cosine * n, u])
+    if not until:
+        return
+    nodes = [state.nodes[name] for name in until]
+    noise = np.zeros((len(nodes), 3, 3))
+    for i, (node, t) in enumerate(zip(nodes, until.values(), strict=True)):
+        wander = physics.SILENT_M_PER_ROOT_S**2 * min(t - node.pose_t, LONGEST_S)
+        across, up = wander, 0.1 * wander
+        noise[i, 0, 0], noise[i, 1, 1], noise[i, 2, 2] = across, across, up
+        step = (0.0, 0.0, 0.0, across, up, 0.0, 0.0, 0.0, 1.0)
+        state.ledger.add("steps", t, node.index, node.pose_t, *step)
+        state.nodes[node.node] = replace(node, pose_t=t, trail=())
+    rows = np.array([state.graph.starts[node.position] for node in nodes])[:, None] + np.arange(3)
+    still = np.zeros((len(nodes), 3, 3)) + np.eye(3)
+    state.graph.advance(rows, state.graph.reference[rows], still, noise)

@@ -87,19 +87,20 @@ class Link(msgspec.Struct, frozen=True, array_like=True):
         return Link(t, way_m, self.number, 1.0 + kept * self.alike, kept, self.error)
 
 
-def link_sigma(noise: LearnedNoise, nominal: float, alike: float) -> float:
+def link_sigma(factor: float, shared: float, nominal: float, alike: float) -> float:
     """Standard deviation to give to one reading of those that share an error.
 
     k readings of white variance w and common variance c are worth k / (w + k c) together: each gets what it
     adds to that.
 
     Args:
-        noise: of the technology.
+        factor: learned standard deviation of the technology over the claimed or assumed one.
+        shared: share of the variance that is common.
         nominal: claimed or assumed standard deviation.
         alike: k, which number in its row of alike readings this one is.
     """
-    total = (nominal * noise.factor) ** 2
-    common = noise.shared * total
+    total = (nominal * factor) ** 2
+    common = shared * total
     white = total - common
     before, now = white + (alike - 1.0) * common, white + alike * common
     return max(math.sqrt(before * now / white), physics.SIGMA_FLOOR_M)

@@ -1,22 +1,25 @@
-"""Readings of one tick as arrays: what each is held against, and its linearisation at any estimate."""
+"""Readings of one tick as a table of numbers: what each is held against, and its linearisation, compiled."""
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Literal, NamedTuple
+from collections.abc import Mapping, Sequence
+from operator import itemgetter
+from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
-from estimator.estimate import Vector3
 from estimator.graph.dense import Array, Indices
 from estimator.graph.robust import Mixture
 from estimator.graph.variable import Variable
 from estimator.measurements.bearing import predict_bearing, wrap
-from estimator.measurements.range import PairJacobian, predict_range
+from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 
-PairKind = Literal["range", "rssi", "bearing"]
+ONE, RANGE, RSSI, BEARING = range(4)
+WIDTH = 8
+"""Numbers that a reading depends on at most: two positions, and two states of a technology."""
 
 
-class Linear(NamedTuple):
+class Single(NamedTuple):
     """A reading of one number of one block: an axis of a position, a bias.
 
     Attributes:
@@ -25,7 +28,6 @@ class Linear(NamedTuple):
         value: what was read.
         sigma: its standard deviation.
         noise: its outliers.
-        source: the technology or kind that it is counted under.
     """
 
     variable: Variable
@@ -33,146 +35,138 @@ class Linear(NamedTuple):
     value: float
     sigma: float
     noise: Mixture
-    source: str = ""
 
 
-class End(NamedTuple):
-    """One end of a reading between two nodes.
-
-    Attributes:
-        variable: the block of its position; None: it is fixed, at `offset_m`.
-        offset_m: where it stood at the reading's epoch, from that block (m).
-    """
-
-    variable: Variable | None
-    offset_m: Vector3
-
-
-class Pair(NamedTuple):
-    """A reading between two nodes.
+class Row(NamedTuple):
+    """A reading of one number of one block (an axis of a position, a bias), or one between two nodes.
 
     Attributes:
-        kind: what was read.
-        a: the end that measured.
-        b: the other one.
-        extra: the block of the technology's states, or of the unit that a bearing is counted from.
+        kind: `ONE`, `RANGE`, `RSSI` or `BEARING`.
+        a: row of the number that is read; else where the block of the end that measured starts. −1: it is
+            fixed, at `a_e`, `a_n`, `a_u`.
         value: what was read.
         sigma: its standard deviation.
-        noise: its outliers.
-        source: the technology that its noise is learned for.
-        nominal: its claimed or assumed standard deviation.
-        link: key of the link that it belongs to; "" where it is not followed.
-        constant: what is added to the extra block's first number: reported heading (rad), sent power (dBm).
+        outliers: see `Mixture`.
+        shift: see `Mixture`.
+        spread: see `Mixture`.
+        nominal: claimed or assumed standard deviation.
+        b: as `a`, of the other end.
+        extra: where the technology's states start, or those of the unit that a bearing is counted from. −1:
+            none.
+        constant: what is added to the first of them: reported heading (rad), sent power (dBm).
+        source: number of the technology that its noise is learned for; −1: none.
+        link: number of its link among those of the tick; −1: none.
+        a_e: where the end that measured stood at the reading's epoch, east of its block (m).
+        a_n: the same, north.
+        a_u: the same, up.
+        b_e: where the other end stood.
+        b_n: the same, north.
+        b_u: the same, up.
     """
 
-    kind: PairKind
-    a: End
-    b: End
-    extra: Variable | None
+    kind: int
+    a: int
     value: float
     sigma: float
-    noise: Mixture
-    source: str
+    outliers: float
+    shift: float
+    spread: float
     nominal: float
-    link: str = ""
+    b: int = -1
+    extra: int = -1
     constant: float = 0.0
+    source: int = -1
+    link: int = -1
+    a_e: float = 0.0
+    a_n: float = 0.0
+    a_u: float = 0.0
+    b_e: float = 0.0
+    b_n: float = 0.0
+    b_u: float = 0.0
 
 
-class Rows(NamedTuple):
-    """m readings, linearised: columns and derivatives m × k, and residuals m."""
-
-    columns: Indices
-    jacobian: Array
-    residual: Array
+FIELDS = len(Row._fields)
+KIND, A, VALUE, SIGMA, OUTLIERS, SHIFT, SPREAD, NOMINAL, B, EXTRA, CONSTANT, SOURCE, LINK, A_E = range(14)
+B_E = A_E + 3
 
 
-class Stack:
-    """All readings of a tick, resolved to the rows where blocks start; valid until a block is deleted.
+def table_of(starts: Mapping[Variable, int], singles: Sequence[Single], pairs: Sequence[Row]) -> Array:
+    """Readings as a table, m × `FIELDS`, those of one kind one after the other.
 
-    Attributes:
-        value: what the linear readings read, in front of the others.
-        sigma: standard deviations, m.
-        outliers: see `Mixture`, m.
-        shift: see `Mixture`, m.
-        spread: see `Mixture`, m.
-        sources: technology of each, m.
-        nominal: claimed or assumed standard deviation of each, m.
-        links: link of each, m.
+    Args:
+        starts: first row of each block; the table is valid until one is deleted.
+        singles: readings of one number.
+        pairs: readings between two nodes.
     """
-
-    def __init__(
-        self, starts: Mapping[Variable, int], linear: Sequence[Linear], pairs: Sequence[Pair]
-    ) -> None:
-        by_kind = [[p for p in pairs if p.kind == kind] for kind in ("range", "rssi", "bearing")]
-        everything: list[Linear | Pair] = [*linear, *(p for group in by_kind for p in group)]
-        self.sigma: Array = np.array([r.sigma for r in everything])
-        noise = np.array([r.noise for r in everything]).reshape(len(everything), 3)
-        self.outliers, self.shift, self.spread = noise.T
-        self.sources = [r.source for r in everything]
-        self.nominal = [r.nominal if isinstance(r, Pair) else r.sigma for r in everything]
-        self.links = [r.link if isinstance(r, Pair) else "" for r in everything]
-        self.value: Array = np.array([r.value for r in linear])
-        self._columns = np.array([starts[r.variable] + r.axis for r in linear], dtype=np.intp)
-        self.groups = [Group(starts, group) for group in by_kind if group]
-
-    def __len__(self) -> int:
-        return len(self.sources)
-
-    def linearise(self, x: Array) -> Rows:
-        """Residuals and Jacobians at an estimate x, n."""
-        columns = np.zeros((len(self), 8), dtype=np.intp)
-        jacobian = np.zeros((len(self), 8))
-        residual = np.zeros(len(self))
-        end = len(self.value)
-        columns[:end, 0], jacobian[:end, 0] = self._columns, 1.0
-        residual[:end] = self.value - x[self._columns]
-        for group in self.groups:
-            start, end = end, end + len(group.value)
-            columns[start:end] = group.columns
-            group.linearise(x, jacobian[start:end], residual[start:end])
-        return Rows(columns, jacobian, residual)
+    rows = [Row(ONE, starts[s.variable] + s.axis, s.value, s.sigma, *s.noise, s.sigma) for s in singles]
+    return np.array([*rows, *sorted(pairs, key=itemgetter(KIND))], dtype=np.float64).reshape(-1, FIELDS)
 
 
-class Group:
-    """The pair readings of one kind.
+@njit(cache=True, error_model="numpy")
+def columns_of(table: Array) -> Indices:
+    """Which numbers each reading depends on, m × 8: of a, b and extra; −1 where there is none."""
+    m = len(table)
+    columns = np.full((m, WIDTH), -1)
+    for r in range(m):
+        if table[r, KIND] == ONE:
+            columns[r, 0] = int(table[r, A])
+            continue
+        for at, field, length in ((0, A, 3), (3, B, 3), (6, EXTRA, 2)):
+            start = int(table[r, field])
+            if start >= 0:
+                for i in range(length):
+                    columns[r, at + i] = start + i
+    return columns
 
-    Attributes:
-        value: what was read, m.
-        offset_a: where the end that measured stood from its block, m × 3 (m).
-        offset_b: the same of the other end.
-        columns: rows of the blocks that each depends on, m × 8; 0 where there is none.
+
+@njit(cache=True, error_model="numpy")
+def linearise(table: Array, columns: Indices, x: Array, jacobian: Array, residual: Array) -> None:
+    """Residuals and derivatives at an estimate.
+
+    Args:
+        table: of m readings.
+        columns: which numbers each depends on, m × 8.
+        x: the estimate, n.
+        jacobian: takes the derivatives, m × 8; 0 where there is no number.
+        residual: takes z − h(x), m.
     """
-
-    def __init__(self, starts: Mapping[Variable, int], pairs: Sequence[Pair]) -> None:
-        self.predict = PREDICT[pairs[0].kind]
-        self.turns = pairs[0].kind == "bearing"
-        self.value: Array = np.array([p.value for p in pairs])
-        self._constant = np.array([p.constant for p in pairs])
-        self.offset_a = np.array([p.a.offset_m for p in pairs])
-        self.offset_b = np.array([p.b.offset_m for p in pairs])
-        blocks = [(p.a.variable, p.b.variable, p.extra) for p in pairs]
-        rows = [[-1 if v is None else starts[v] for v in three] for three in blocks]
-        a, b, extra = np.array(rows, dtype=np.intp).T
-        spans = (a[:, None] + np.arange(3), b[:, None] + np.arange(3), extra[:, None] + np.arange(2))
-        self._used: Array = np.repeat(np.array([a, b, extra]).T >= 0, (3, 3, 2), axis=1).astype(np.float64)
-        self.columns: Indices = np.where(self._used > 0.0, np.concatenate(spans, axis=1), 0)
-
-    def linearise(self, x: Array, jacobian: Array, residual: Array) -> None:
-        """Fill Jacobian (m × 8) and residual (m) at an estimate x, n."""
-        there = x[self.columns] * self._used
-        extra_1, extra_2 = there[:, 6] + self._constant, there[:, 7]
-        got = self.predict(there[:, :3] + self.offset_a, there[:, 3:6] + self.offset_b, extra_1, extra_2)
-        difference = self.value - got.predicted
-        residual[:] = wrap(difference) if self.turns else difference
-        jacobian[:] = np.concatenate([got.by_a, got.by_b, got.by_extra], axis=1) * self._used
-
-
-def _bearing(a: Array, b: Array, heading_rad: Array, _: Array) -> PairJacobian:
-    return predict_bearing(a, b, heading_rad)
-
-
-PREDICT: dict[PairKind, Callable[[Array, Array, Array, Array], PairJacobian]] = {
-    "range": predict_range,
-    "rssi": predict_rssi,
-    "bearing": _bearing,
-}
+    m = len(table)
+    a, b, states = np.empty((m, 3)), np.empty((m, 3)), np.zeros((2, m))
+    for r in range(m):
+        for i in range(3):
+            a[r, i], b[r, i] = table[r, A_E + i], table[r, B_E + i]
+            if columns[r, i] >= 0:
+                a[r, i] += x[columns[r, i]]
+            if columns[r, 3 + i] >= 0:
+                b[r, i] += x[columns[r, 3 + i]]
+        states[0, r] = table[r, CONSTANT]
+        if columns[r, 6] >= 0:
+            states[0, r] += x[columns[r, 6]]
+            states[1, r] = x[columns[r, 7]]
+    first = 0
+    while first < m:
+        kind, last = table[first, KIND], first + 1
+        while last < m and table[last, KIND] == kind:
+            last += 1
+        own, others, one, two = a[first:last], b[first:last], states[0, first:last], states[1, first:last]
+        if kind == ONE:
+            jacobian[first:last] = 0.0
+            jacobian[first:last, 0] = 1.0
+            residual[first:last] = table[first:last, VALUE] - own[:, 0]
+        else:
+            if kind == RANGE:
+                got = predict_range(own, others, one, two)
+            elif kind == RSSI:
+                got = predict_rssi(own, others, one, two)
+            else:
+                got = predict_bearing(own, others, one)
+            off = table[first:last, VALUE] - got.predicted
+            residual[first:last] = wrap(off) if kind == BEARING else off
+            jacobian[first:last, :3] = got.by_a
+            jacobian[first:last, 3:6] = got.by_b
+            jacobian[first:last, 6:] = got.by_extra
+            for r in range(first, last):
+                for i in range(WIDTH):
+                    if columns[r, i] < 0:
+                        jacobian[r, i] = 0.0
+        first = last

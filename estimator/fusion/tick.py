@@ -1,15 +1,18 @@
 """One tick of the default tracker: what happens to its readings, in this order."""
 
-from collections.abc import Sequence
-from typing import NamedTuple
+import math
+from collections.abc import Mapping, Sequence
+from operator import attrgetter
 
+import numpy as np
 from msgspec.structs import replace
 
 from estimator.estimate import Notice
 from estimator.fusion import beginnings, free, held, introduce, motion, physics
-from estimator.fusion.rows import Linear, Pair, Stack
+from estimator.fusion.rows import Single, table_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.update import update
+from estimator.fusion.way import Way
 from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude, Pressure
 from estimator.measurements.bearing import Bearing
@@ -23,11 +26,8 @@ from estimator.measurements.retire import Retire
 from estimator.measurements.rssi import Rssi
 
 SAME_EPOCH_S = 1e-6
-
-
-class _Held(NamedTuple):
-    linear: list[Linear]
-    pairs: list[Pair]
+PAIRS = (Range, Rssi, Bearing)
+HELD = (Range, Rssi, Bearing, Position, Altitude, Pressure, Drop)
 
 
 def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyReading]) -> list[Notice]:
@@ -43,46 +43,66 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyReading]
     """
     state.notices = []
     state.newest_t = max(state.newest_t, until_t)
+    displacements: list[Displacement] = []
+    holds: list[AnyReading] = list(state.waiting)
+    retired: list[Retire] = []
     for reading in readings:
-        if isinstance(reading, Node):
+        if isinstance(reading, HELD):
+            holds.append(reading)
+        elif isinstance(reading, Displacement):
+            displacements.append(reading)
+        elif isinstance(reading, Node):
             introduce.introduce(state, reading)
+        elif isinstance(reading, Retire):
+            retired.append(reading)
         elif isinstance(reading, Imu):
             text = f"{reading.node} sends raw IMU samples, which are logged and not fused yet"
             state.say("not_fused", reading.t, reading.node, text, once=f"imu of {reading.node}")
             state.node_of(reading.node, "responder", reading.t)
             state.count("not_fused")
-    linear: list[Linear] = []
-    motion.move_units(state, [r for r in readings if isinstance(r, Displacement)], linear)
-    retired = [r for r in readings if isinstance(r, Retire)]
-    gone = {r.node for r in retired}
-    ready: list[AnyReading] = []
-    waiting: list[AnyReading] = []
-    holds = (Position, Altitude, Pressure, Drop, Range, Rssi, Bearing)
-    for reading in sorted(
-        [*state.waiting, *(r for r in readings if isinstance(r, holds))], key=lambda r: r.t
-    ):
-        late = reading.t < until_t - physics.PENDING_S
-        wait = not late and not gone.intersection(names_of(reading)) and _ahead(state, reading)
-        (waiting if wait else ready).append(reading)
-    state.waiting = tuple(waiting)
+    singles: list[Single] = []
+    motion.move_units(state, displacements, singles)
+    holds.sort(key=attrgetter("t"))
+    ready = _covered(state, holds, until_t - physics.PENDING_S, {r.node for r in retired})
     for part in _parts(state, ready):
-        _hold(state, part, linear)
-        linear = []
-    for reading in retired:
-        _retire(state, reading)
+        _hold(state, part, singles)
+        singles = []
+    for gone in retired:
+        _retire(state, gone)
     keep_poses(state)
     return state.notices
 
 
+def _covered(
+    state: FusionState, readings: Sequence[AnyReading], late_t: float, gone: set[str]
+) -> list[AnyReading]:
+    """Readings to be held now; for the others a displacement that covers their epoch may still come.
+
+    Args:
+        state: the fusion: takes those that wait.
+        readings: in order of epoch.
+        late_t: epoch before which none waits.
+        gone: nodes that retire in this tick: nothing waits for them.
+    """
+    units = {n.node: n.pose_t + SAME_EPOCH_S for n in state.nodes.values() if n.mode == "unit"}
+    ready: list[AnyReading] = []
+    waiting: list[AnyReading] = []
+    for reading in readings:
+        t, names = reading.t, names_of(reading)
+        wait = t >= late_t and t > min(units.get(name, math.inf) for name in names)
+        (waiting if wait and gone.isdisjoint(names) else ready).append(reading)
+    state.waiting = tuple(waiting)
+    return ready
+
+
 def keep_poses(state: FusionState) -> None:
     """Take down where everyone who moves is now: the next solution of the window starts from there."""
-    reference, starts = state.graph.reference, state.graph.starts
+    reference, starts = state.graph.reference.tolist(), state.graph.starts
     for node in state.nodes.values():
         if node.moving:
             unit = node.mode == "unit"
-            rest = starts[node.unit if unit else node.velocity]
-            here = starts[node.position]
-            values = (*reference[here : here + 3].tolist(), *reference[rest : rest + 3].tolist())
+            here, rest = starts[node.position], starts[node.unit if unit else node.velocity]
+            values = (*reference[here : here + 3], *reference[rest : rest + 3])
             state.ledger.add("poses", node.pose_t, node.index, float(unit), *values)
 
 
@@ -93,74 +113,83 @@ def flush(state: FusionState) -> None:
         _hold(state, waiting, [])
 
 
-def _hold(state: FusionState, readings: Sequence[AnyReading], linear: list[Linear]) -> None:
+def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Single]) -> None:
     """Hold readings against the graph: fixes and heights, then drops, then pairs, all solved together."""
-    _carry(state, readings)
-    pairs: list[Pair] = []
+    until = _newest(readings)
+    _carry(state, until)
+    between: list[Range | Rssi | Bearing] = []
     for reading in readings:
-        if isinstance(reading, Position):
-            linear.extend(held.fix(state, reading))
+        if isinstance(reading, PAIRS):
+            between.append(reading)
+        elif isinstance(reading, Position):
+            singles.extend(held.fix(state, reading))
         elif isinstance(reading, Altitude | Pressure):
-            linear.extend(held.height(state, reading))
+            singles.extend(held.height(state, reading))
         elif isinstance(reading, Drop):
             _drop(state, reading)
-    for reading in readings:
-        if isinstance(reading, Range | Rssi | Bearing):
-            made = _pair(state, reading)
-            if made is not None:
-                pairs.append(made)
-    if linear or pairs:
-        update(state, Stack(state.graph.starts, linear, pairs))
+    pairs = held.Pairs(state)
+    for pair in between:
+        _pair(state, pairs, pair)
+    update(state, table_of(state.graph.starts, singles, pairs.rows), pairs.links)
     beginnings.decide(state)
+    for name, t in until.items():
+        node = state.nodes.get(name)
+        if node is not None and node.t < t and node.mode != "retired":
+            state.nodes[name] = replace(node, t=t)
+
+
+def _newest(readings: Sequence[AnyReading]) -> dict[str, float]:
+    """The newest epoch at which something is held against each node."""
+    until: dict[str, float] = {}
     for reading in readings:
         for name in names_of(reading):
-            node = state.nodes.get(name)
-            if node is not None and node.t < reading.t and node.mode != "retired":
-                state.nodes[name] = replace(node, t=reading.t)
+            if reading.t > until.get(name, -1.0):
+                until[name] = reading.t
+    return until
 
 
-def _parts(state: FusionState, readings: Sequence[AnyReading]) -> list[list[AnyReading]]:
+def _parts(state: FusionState, readings: Sequence[AnyReading]) -> list[Sequence[AnyReading]]:
     """Readings that are held together: all, but by parts of the tick where a node without PDR is among them.
 
     A unit's own way tells where it stood at each epoch; a velocity that changes does so for a moment only.
     """
+    loose = {
+        n.node for n in state.nodes.values() if n.role in MOVING_ROLES and n.mode in ("free", "undecided")
+    }
+    if not loose:
+        return [readings]
     together: list[AnyReading] = []
     parts: dict[int, list[AnyReading]] = {}
     for reading in readings:
-        nodes = (state.nodes.get(name) for name in names_of(reading))
-        if any(n is not None and n.role in MOVING_ROLES and n.mode in ("free", "undecided") for n in nodes):
-            parts.setdefault(int(reading.t / physics.FREE_TICK_S), []).append(reading)
-        else:
+        if loose.isdisjoint(names_of(reading)):
             together.append(reading)
+        else:
+            parts.setdefault(int(reading.t / physics.FREE_TICK_S), []).append(reading)
     return [together, *(parts[k] for k in sorted(parts))]
 
 
 def names_of(reading: AnyReading) -> tuple[str, ...]:
     """The nodes that a reading names."""
-    if isinstance(reading, Range | Rssi | Bearing):
+    if isinstance(reading, PAIRS):
         return reading.a, reading.b
     if isinstance(reading, Drop):
         return reading.node, reading.by
     return (reading.node,)
 
 
-def _ahead(state: FusionState, reading: AnyReading) -> bool:
-    """Whether a displacement that covers the reading's epoch may still come."""
-    nodes = (state.nodes.get(name) for name in names_of(reading))
-    return any(n is not None and n.mode == "unit" and reading.t > n.pose_t + SAME_EPOCH_S for n in nodes)
-
-
-def _carry(state: FusionState, readings: Sequence[AnyReading]) -> None:
+def _carry(state: FusionState, until: Mapping[str, float]) -> None:
     """Move nodes without newer displacements to the newest epoch at which something is held against them."""
-    until: dict[str, float] = {}
-    for reading in readings:
-        for name in names_of(reading):
-            until[name] = max(until.get(name, 0.0), reading.t)
-    free.move_free(state, {n: t for n, t in until.items() if n in state.nodes})
-    for name, t in until.items():
-        node = state.nodes.get(name)
-        if node is not None and node.mode == "unit" and t > node.pose_t + SAME_EPOCH_S:
-            motion.drift_unit(state, node, t)
+    nodes = state.nodes
+    known = {name: t for name, t in until.items() if name in nodes}
+    free.move_free(state, {name: t for name, t in known.items() if nodes[name].mode == "free"})
+    motion.drift_units(
+        state,
+        {
+            name: t
+            for name, t in known.items()
+            if nodes[name].mode == "unit" and t > nodes[name].pose_t + SAME_EPOCH_S
+        },
+    )
 
 
 def _drop(state: FusionState, reading: Drop) -> None:
@@ -175,37 +204,33 @@ def _drop(state: FusionState, reading: Drop) -> None:
         return
     where = state.place(by)
     if by.moving:
-        where = where + motion.offset_at(state, by, reading.t)
+        where = where + np.array(Way(state, by).offset(reading.t))
     done = introduce.drop(state, reading.node, by, where, reading.t)
     state.count("fused" if done else "not_fused")
 
 
-def _pair(state: FusionState, reading: Range | Rssi | Bearing) -> Pair | None:
-    a, b = (state.node_of(name, "breadcrumb", reading.t) for name in (reading.a, reading.b))
+def _pair(state: FusionState, pairs: held.Pairs, reading: Range | Rssi | Bearing) -> None:
+    a = state.node_of(reading.a, "breadcrumb", reading.t)
+    b = state.node_of(reading.b, "breadcrumb", reading.t)
     for node, other in ((a, b), (b, a)):
         if node.mode == "retired":
             text = f"{node.node} is retired: what {other.node} measures to it is set aside"
             state.say("conflict", reading.t, node.node, text, once=f"pair with retired {node.node}")
             state.count("not_fused")
-            return None
+            return
     if a.decided and b.decided:
         if a.mode == "fixed" and b.mode == "fixed":
             state.count("not_fused")
-            return None
-        made = held.pair(state, a, b, reading)
-        if made is not None:
-            state.count("fused")
-        return made
+        else:
+            pairs.take(a, b, reading)
+        return
     undecided, other = (b, a) if a.decided else (a, b)
-    if not other.decided or isinstance(reading, Bearing):
+    moving = other.moving and undecided.role in MOVING_ROLES
+    if not other.decided or isinstance(reading, Bearing) or moving:
         state.count("not_fused")
-        return None
-    if other.moving and undecided.role in MOVING_ROLES:
-        state.count("not_fused")
-        return None
-    held.enter(state, a, b, reading)
+        return
+    held.enter(state, a, b, reading.t, held.told_by(reading))
     state.sightings[undecided.node] = state.sightings.get(undecided.node, 0) + 1
-    return None
 
 
 def _retire(state: FusionState, reading: Retire) -> None:

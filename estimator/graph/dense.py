@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dpotrf, dpotri, dpotrs, dtrtrs
+from scipy.linalg.lapack import dpotrf, dpotri, dpotrs
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -41,19 +41,20 @@ def factorise(matrix: Array) -> Cholesky:
     if len(matrix) == 0:  # LAPACK refuses empty matrices
         return Cholesky(np.zeros((0, 0)), np.zeros(0))
     diagonal = np.diagonal(matrix)
-    if not np.isfinite(matrix).all() or (diagonal <= 0.0).any():
+    if not np.isfinite(matrix).all() or not diagonal.min() > 0.0:
         raise ValueError("the information matrix is not finite or has a variable without information")
     scale = np.sqrt(diagonal)
     unscale = 1.0 / scale
     jitter = 0.0
     while True:
         scaled = matrix * unscale[:, None]
-        scaled *= unscale[None, :]
-        scaled[range(len(scale)), range(len(scale))] += jitter
+        scaled *= unscale
+        if jitter:
+            scaled.flat[:: len(scale) + 1] += jitter
         # LAPACK works by columns; the matrix is symmetric, so its transpose is the same without a copy.
         factor, failed = dpotrf(scaled.T, lower=1, clean=1, overwrite_a=1)
         if failed == 0:
-            return Cholesky(np.asarray(factor), scale)
+            return Cholesky(factor, scale)
         jitter = 1e-13 if jitter == 0.0 else jitter * 10.0
         if jitter > MAX_JITTER:
             raise ValueError("the information matrix is not positive definite")
@@ -92,14 +93,8 @@ def inverse(cholesky: Cholesky) -> Array:
         return np.zeros((0, 0))
     lower, _ = dpotri(cholesky.factor, lower=1)
     full: Array = lower + lower.T
-    full[range(len(full)), range(len(full))] *= 0.5
+    full.flat[:: len(full) + 1] *= 0.5
     unscale = 1.0 / cholesky.scale
     full *= unscale[:, None]
-    full *= unscale[None, :]
+    full *= unscale
     return full
-
-
-def half_solve(cholesky: Cholesky, right: Array) -> Array:
-    """W = (D C)⁻¹ `right` for a matrix n × k: Wᵀ W = `right`ᵀ A⁻¹ `right`, exactly symmetric."""
-    answer, _ = dtrtrs(cholesky.factor, right / cholesky.scale[:, None], lower=1)
-    return np.asarray(answer, dtype=np.float64)

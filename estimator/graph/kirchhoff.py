@@ -10,7 +10,8 @@ from typing import Self
 
 import numpy as np
 
-from estimator.graph.dense import Array, Cholesky, Indices, factorise, half_solve, inverse, mended, solve
+from estimator.graph.dense import Array, Cholesky, Indices, factorise, inverse, mended, solve
+from estimator.graph.filter_kernels import carry, loosen, scatter
 from estimator.graph.variable import DIMENSION, Variable
 
 
@@ -36,7 +37,8 @@ class Kirchhoff:
         for variable in variables:
             graph.starts[variable] = graph.size
             graph.size += DIMENSION[variable.kind]
-        graph._matrix, graph._vector, graph._reference = matrix, vector, reference
+        graph._matrix = np.ascontiguousarray(matrix)
+        graph._vector, graph._reference = vector, reference
         return graph
 
     def storage(self) -> tuple[Array, Array, Array]:
@@ -81,7 +83,9 @@ class Kirchhoff:
 
     def copy(self) -> Self:
         """An independent copy."""
-        return self.of(self.starts, self._matrix.copy(), self._vector.copy(), self._reference.copy())
+        twin = self.of((), self._matrix.copy(), self._vector.copy(), self._reference.copy())
+        twin.starts, twin.size = dict(self.starts), self.size
+        return twin
 
     def add_node(
         self, variable: Variable, reference: Sequence[float] | Array, sigma: Iterable[float]
@@ -129,8 +133,7 @@ class Kirchhoff:
             information: P⁻¹ of each, m.
             residual: z − h(x) of each, m.
         """
-        scatter(self._matrix, columns, jacobian, information)
-        np.add.at(self._vector, columns.ravel(), (jacobian * (information * residual)[:, None]).ravel())
+        scatter(self._matrix, self._vector, columns, jacobian, information, residual)
 
     def delete_nodes(self, variables: Sequence[Variable]) -> None:
         """Operation 3 (eq. 17): marginalise blocks; what they held of their neighbours stays as edges.
@@ -177,38 +180,22 @@ class Kirchhoff:
             transition: F of each, g × d × d.
             noise: covariance Q of w of each, g × d × d, positive definite.
         """
+        kernel = carry(self._matrix, self._vector, self.size, rows, transition, noise)
         flat = rows.ravel()
-        n = self.size
-        back = np.linalg.inv(transition)
-        matrix = self._matrix[:n, :n]
-        g, d = rows.shape
-        matrix[flat] = np.matmul(back.transpose(0, 2, 1), matrix[flat].reshape(g, d, n)).reshape(g * d, n)
-        turned = np.matmul(matrix[:, flat].reshape(n, g, 1, d), back).reshape(n, g * d)
-        # Where F contracts, its inverse would blow up what rounding leaves of asymmetry.
-        turned[flat] = 0.5 * (turned[flat] + turned[flat].T)
-        matrix[:, flat], matrix[flat] = turned, turned.T
-        vector = self._vector[:n]
-        vector[flat] = np.matmul(back.transpose(0, 2, 1), vector[flat].reshape(g, d, 1)).ravel()
-        kernel = matrix[np.ix_(flat, flat)].copy()
-        for i, block in enumerate(np.linalg.inv(noise)):
-            kernel[i * d : (i + 1) * d, i * d : (i + 1) * d] += block
-        try:
-            cholesky = factorise(kernel)
-        except ValueError:
-            cholesky = factorise(mended(kernel))
-        half = half_solve(cholesky, np.column_stack([matrix[flat], vector[flat]]))
-        edges = half[:, :-1]
-        matrix -= edges.T @ edges
-        vector -= edges.T @ half[:, -1]
+        if not loosen(self._matrix, self._vector, self.size, flat, kernel):
+            loosen(self._matrix, self._vector, self.size, flat, mended(kernel))
         self._reference[flat] = moved.ravel()
 
+    def mend(self) -> None:
+        """Make L positive definite where rounding has left it indefinite."""
+        self._matrix[: self.size, : self.size] = mended(self.information)
+
     def factorise(self) -> Cholesky:
-        """The Cholesky factor of L; where rounding has left L indefinite, L is mended first."""
+        """The Cholesky factor of L, or of L mended where rounding has left it indefinite."""
         try:
             return factorise(self.information)
         except ValueError:
-            self._matrix[: self.size, : self.size] = mended(self.information)
-            return factorise(self.information)
+            return factorise(mended(self.information))
 
     def settle(self, matrix: Array, reference: Array) -> None:
         """Take over a solved system: L (n × n) linearised at the estimate x (n), where b is nil."""
@@ -232,10 +219,3 @@ class Kirchhoff:
     def covariance(self) -> Array:
         """Σ = L⁻¹ (eq. 5), n × n; the block of a node is its effective resistance to the base."""
         return inverse(self.factorise())
-
-
-def scatter(matrix: Array, columns: Indices, jacobian: Array, information: Array) -> None:
-    """`matrix` += Hᵀ diag(information) H, H given by its rows' columns (m × k); `matrix` is contiguous."""
-    weighted = jacobian * information[:, None]
-    flat = columns[:, :, None] * matrix.shape[1] + columns[:, None, :]
-    np.add.at(matrix.reshape(-1), flat.ravel(), (weighted[:, :, None] * jacobian[:, None, :]).ravel())

@@ -8,6 +8,7 @@ is and where it is centred, so an obstructed range may be too long but hardly to
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from estimator.graph.dense import Array
 
@@ -40,6 +41,7 @@ class Weighted(NamedTuple):
     good: Array
 
 
+@njit(cache=True, error_model="numpy")
 def weigh(
     residual: Array, sigma: Array, predicted: Array, outliers: Array, shift: Array, spread: Array
 ) -> Weighted:
@@ -56,12 +58,16 @@ def weigh(
         shift: see `Mixture`, m.
         spread: see `Mixture`, m.
     """
-    good_variance = sigma**2
-    bad_variance = good_variance + spread**2
-    good_total, bad_total = good_variance + predicted, bad_variance + predicted
-    log_good = np.log1p(-outliers) - 0.5 * (np.log(good_total) + residual**2 / good_total)
-    log_bad = np.log(outliers) - 0.5 * (np.log(bad_total) + (residual - shift) ** 2 / bad_total)
-    good = 1.0 / (1.0 + np.exp(np.clip(log_bad - log_good, -700.0, 700.0)))
-    from_good, from_bad = good / good_variance, (1.0 - good) / bad_variance
-    information = from_good + from_bad
-    return Weighted(information, residual - shift * from_bad / information, good)
+    m = len(residual)
+    information, pulled, good = np.empty(m), np.empty(m), np.empty(m)
+    for i in range(m):
+        good_variance = sigma[i] ** 2
+        bad_variance = good_variance + spread[i] ** 2
+        good_total, bad_total = good_variance + predicted[i], bad_variance + predicted[i]
+        log_good = np.log1p(-outliers[i]) - 0.5 * (np.log(good_total) + residual[i] ** 2 / good_total)
+        log_bad = np.log(outliers[i]) - 0.5 * (np.log(bad_total) + (residual[i] - shift[i]) ** 2 / bad_total)
+        good[i] = 1.0 / (1.0 + np.exp(min(max(log_bad - log_good, -700.0), 700.0)))
+        from_good, from_bad = good[i] / good_variance, (1.0 - good[i]) / bad_variance
+        information[i] = from_good + from_bad
+        pulled[i] = residual[i] - shift[i] * from_bad / information[i]
+    return Weighted(information, pulled, good)

@@ -2,6 +2,9 @@
 
 import numpy as np
 
+from estimator.fusion.descent import descend
+from estimator.fusion.rows import FIELDS
+from estimator.fusion.update import tally
 from estimator.graph.kernels import (
     eliminate,
     scatter_rows,
@@ -9,10 +12,30 @@ from estimator.graph.kernels import (
     strongest,
     substitute,
 )
+from estimator.graph.kirchhoff import Kirchhoff
+from estimator.graph.robust import weigh
+from estimator.graph.variable import Variable
+from estimator.measurements.bearing import predict_bearing, wrap
+from estimator.measurements.displacement import move
+from estimator.measurements.range import predict_range
+from estimator.measurements.rssi import predict_rssi
 
 
 def warm_up() -> None:
-    """Call each compiled function once on the smallest chain there is."""
+    """Call each compiled function once, with arrays of the kinds that it is called with."""
+    _warm_chain()
+    _warm_filter()
+    one, place = np.ones(2), np.zeros((2, 3))
+    strided = np.full((2, 3), 0.5).T
+    predict_range(place, place, strided[0], strided[1])
+    predict_rssi(place, place, one, strided[1])
+    predict_bearing(place, place, one)
+    wrap(one)
+    weigh(one, one, one, *strided)
+
+
+def _warm_chain() -> None:
+    """On the smallest chain there is."""
     k, n, s = 2, 1, 1
     diagonal, link, border = np.ones((k, n, n)), np.zeros((k - 1, n, n)), np.zeros((k, n, s))
     corner, gradient, rest = np.ones((s, s)), np.zeros((k, n)), np.zeros(s)
@@ -24,6 +47,21 @@ def warm_up() -> None:
     substitute(factors, link, border, gradient, rest, k, np.zeros((k, n)))
     selected_inverse(factors, link, border, corner, np.zeros((k, n, n)), np.zeros((k - 1, n, n)))
     strongest(one, one, one, 1.0, 1)
+
+
+def _warm_filter() -> None:
+    """On the smallest Kirchhoff state there is."""
+    graph = Kirchhoff()
+    graph.add_node(Variable("position", ""), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    rows, straight = np.arange(3)[None], np.eye(3)[None]
+    graph.advance(rows, graph.reference[rows], straight, straight)
+    graph.add_measurements(rows, np.ones((1, 3)), np.ones(1), np.zeros(1))
+    move(np.zeros((1, 6)), np.zeros((1, 3)), np.ones(1))
+    table = np.full((1, FIELDS), 0.5)
+    table[0, :2] = 0.0
+    found = descend(table, graph.information.copy(), graph.vector, graph.reference, 1)
+    sums, told = np.zeros((1, 5)), (found.residual, found.predicted, found.good)
+    tally(table, *told, np.zeros(1, dtype=np.bool_), np.zeros(1), sums)
 
 
 if __name__ == "__main__":

@@ -50,6 +50,7 @@ def predict_bearing(a: Array, b: Array, heading_rad: Array) -> PairJacobian:
     return PairJacobian(predicted, by_a, by_b, by_extra)
 
 
+@njit(cache=True)
 def wrap(angle_rad: Array) -> Array:
     """The same angles within −π to π."""
     return np.remainder(angle_rad + np.pi, 2.0 * np.pi) - np.pi

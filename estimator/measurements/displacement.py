@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from estimator.graph.dense import Array
 from estimator.measurements.base import AngleRad, EpochSeconds, Identifier, Reading, SigmaM, Vector3M
@@ -49,6 +50,7 @@ class Moved(NamedTuple):
     transition: Array
 
 
+@njit(cache=True)
 def move(state: Array, delta_m: Array, duration_s: Array) -> Moved:
     """P' = p + s Rz(ψ) δ and ψ' = ψ + β Δt (estimation.md, point 1): the unit's frame turns while it walks.
 
@@ -59,19 +61,24 @@ def move(state: Array, delta_m: Array, duration_s: Array) -> Moved:
         delta_m: displacement in the unit's frame, g × 3 (m).
         duration_s: Δt, g (s).
     """
-    position, psi, bias, scale = state[:, :3], state[:, 3], state[:, 4], 1.0 + state[:, 5]
-    halfway = psi + 0.5 * bias * duration_s
-    cosine, sine = np.cos(halfway), np.sin(halfway)
-    east = cosine * delta_m[:, 0] - sine * delta_m[:, 1]
-    north = sine * delta_m[:, 0] + cosine * delta_m[:, 1]
-    turned = np.column_stack([east, north, delta_m[:, 2]])
-    after = state.copy()
-    after[:, :3] = position + scale[:, None] * turned
-    after[:, 3] = psi + bias * duration_s
-    transition = np.broadcast_to(np.eye(6), (len(state), 6, 6)).copy()
-    transition[:, 0, 3] = -scale * north
-    transition[:, 1, 3] = scale * east
-    transition[:, :2, 4] = transition[:, :2, 3] * (0.5 * duration_s)[:, None]
-    transition[:, :3, 5] = turned
-    transition[:, 3, 4] = duration_s
+    g = len(state)
+    after, transition = state.copy(), np.zeros((g, 6, 6))
+    for i in range(g):
+        psi, bias, scale = state[i, 3], state[i, 4], 1.0 + state[i, 5]
+        halfway = psi + 0.5 * bias * duration_s[i]
+        cosine, sine = np.cos(halfway), np.sin(halfway)
+        east = cosine * delta_m[i, 0] - sine * delta_m[i, 1]
+        north = sine * delta_m[i, 0] + cosine * delta_m[i, 1]
+        up = delta_m[i, 2]
+        after[i, 0] += scale * east
+        after[i, 1] += scale * north
+        after[i, 2] += scale * up
+        after[i, 3] += bias * duration_s[i]
+        for axis in range(6):
+            transition[i, axis, axis] = 1.0
+        transition[i, 0, 3], transition[i, 1, 3] = -scale * north, scale * east
+        transition[i, 0, 4] = transition[i, 0, 3] * 0.5 * duration_s[i]
+        transition[i, 1, 4] = transition[i, 1, 3] * 0.5 * duration_s[i]
+        transition[i, 0, 5], transition[i, 1, 5], transition[i, 2, 5] = east, north, up
+        transition[i, 3, 4] = duration_s[i]
     return Moved(after, transition)

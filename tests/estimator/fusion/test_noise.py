@@ -35,13 +35,13 @@ def test_the_share_of_outliers_goes_from_the_usual_one_to_what_is_seen() -> None
 
 def test_alike_readings_are_together_worth_no_more_than_their_common_error_allows() -> None:
     noise = LearnedNoise(count=100.0, squares=100.0, pairs=100.0, products=50.0)
-    worth = sum(link_sigma(noise, 1.0, float(k)) ** -2 for k in range(1, 200))
+    worth = sum(link_sigma(noise.factor, noise.shared, 1.0, float(k)) ** -2 for k in range(1, 200))
     assert worth == pytest.approx(199.0 / (0.5 + 199.0 * 0.5), rel=1e-6)
 
 
 def test_independent_readings_keep_their_full_worth() -> None:
     noise = LearnedNoise(count=100.0, squares=100.0, pairs=100.0, products=0.0)
-    assert link_sigma(noise, 0.3, 50.0) == pytest.approx(0.3)
+    assert link_sigma(noise.factor, noise.shared, 0.3, 50.0) == pytest.approx(0.3)
 
 
 def test_a_link_forgets_its_error_once_an_end_has_walked_a_room_on() -> None:

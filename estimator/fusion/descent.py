@@ -1,0 +1,125 @@
+"""Gauss-Newton on the readings of one tick: robust, relinearised until it rests, compiled as one loop."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from estimator.fusion.rows import OUTLIERS, SHIFT, SIGMA, SPREAD, WIDTH, columns_of, linearise
+from estimator.graph.dense import Array, Indices
+from estimator.graph.filter_kernels import factorised, forward, scatter, solved
+from estimator.graph.robust import weigh
+
+BENT = 0.2
+"""Curvature left alone: residuals that differ from their linear forecast by less, in standard deviations."""
+HALVINGS = 4
+SOLVED, UNSOLVABLE, INDEFINITE = range(3)
+
+
+class Found(NamedTuple):
+    """What a tick's readings have led to.
+
+    Attributes:
+        outcome: `SOLVED`; `UNSOLVABLE`: they make no solvable system; `INDEFINITE`: L itself is not positive
+            definite.
+        matrix: L with the readings, linearised where they were solved last, n × n.
+        x: the estimate, n.
+        residual: z − h(x) of each, m.
+        predicted: variance of each prediction by the state's covariance, m.
+        good: probability that each has the good noise, m.
+    """
+
+    outcome: int
+    matrix: Array
+    x: Array
+    residual: Array
+    predicted: Array
+    good: Array
+
+
+@njit(cache=True, error_model="numpy")
+def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: int) -> Found:
+    """Add readings to a Kirchhoff state (operation 1 of paper A, eq. 18) and solve it (eq. 4).
+
+    Args:
+        table: of m readings.
+        prior: L, n × n.
+        pull: b, n, in deviations from `start`.
+        start: x, n.
+        iterations: how often to relinearise at most.
+    """
+    m, n = len(table), len(start)
+    sigma, outliers = table[:, SIGMA].copy(), table[:, OUTLIERS].copy()
+    shift, spread = table[:, SHIFT].copy(), table[:, SPREAD].copy()
+    x, matrix = start.copy(), prior.copy()
+    columns, jacobian, residual = columns_of(table), np.empty((m, WIDTH)), np.empty(m)
+    ahead, forecast = np.empty((m, WIDTH)), np.empty(m)
+    factor, unscale, predicted, good = np.zeros((n, n)), np.empty(n), np.empty(m), np.empty(m)
+    if not factorised(prior, factor, unscale):
+        return Found(INDEFINITE, matrix, x, residual, predicted, good)
+    linearise(table, columns, x, jacobian, residual)
+    variances(columns, jacobian, factor, unscale, predicted)
+    cost = misfit(table, residual, x - start, prior, pull)
+    for _ in range(iterations):
+        weighted = weigh(residual, sigma, predicted, outliers, shift, spread)
+        good[:] = weighted.good
+        matrix[:] = prior
+        gradient = pull - np.dot(prior, x - start)
+        scatter(matrix, gradient, columns, jacobian, weighted.information, weighted.residual)
+        if not np.isfinite(gradient).all() or not factorised(matrix, factor, unscale):
+            return Found(UNSOLVABLE, matrix, x, residual, predicted, good)
+        step = solved(factor, unscale, gradient)
+        before, forecast[:] = x.copy(), residual
+        for _ in range(HALVINGS):
+            # The step is halved while it makes the fit clearly worse.
+            x = before + step
+            linearise(table, columns, x, ahead, residual)
+            reached = misfit(table, residual, x - start, prior, pull)
+            if reached <= cost + 1.0:
+                break
+            step = 0.5 * step
+        cost = reached
+        rests = True
+        for r in range(m):
+            for i in range(WIDTH):
+                if columns[r, i] >= 0:
+                    forecast[r] -= jacobian[r, i] * (x[columns[r, i]] - before[columns[r, i]])
+            most = BENT * np.sqrt(sigma[r] ** 2 + predicted[r])
+            rests = rests and abs(residual[r] - forecast[r]) < most
+        if rests:
+            break
+        jacobian[:] = ahead
+        variances(columns, jacobian, factor, unscale, predicted)
+    outcome = SOLVED if np.isfinite(x).all() else UNSOLVABLE
+    return Found(outcome, matrix, x, residual, predicted, good)
+
+
+@njit(cache=True, error_model="numpy")
+def variances(columns: Indices, jacobian: Array, factor: Array, unscale: Array, predicted: Array) -> None:
+    """Variance of each prediction by the state's covariance, H Σ Hᵀ, m, from the factor of L."""
+    n = len(unscale)
+    half = np.empty(n)
+    for r in range(len(jacobian)):
+        half[:] = 0.0
+        first = n
+        for i in range(WIDTH):
+            column = columns[r, i]
+            if column >= 0 and jacobian[r, i] != 0.0:
+                half[column] += jacobian[r, i] * unscale[column]
+                first = min(first, column)
+        forward(factor, half, first)
+        predicted[r] = np.dot(half, half)
+
+
+@njit(cache=True, error_model="numpy")
+def misfit(table: Array, residual: Array, moved: Array, prior: Array, pull: Array) -> float:
+    """Negative log likelihood of the mixture noise and the prior, up to a constant."""
+    total = 0.5 * np.dot(moved, np.dot(prior, moved)) - np.dot(pull, moved)
+    for r in range(len(residual)):
+        good = table[r, SIGMA] ** 2
+        bad = good + table[r, SPREAD] ** 2
+        from_good = np.log1p(-table[r, OUTLIERS]) - 0.5 * (np.log(good) + residual[r] ** 2 / good)
+        off = residual[r] - table[r, SHIFT]
+        from_bad = np.log(table[r, OUTLIERS]) - 0.5 * (np.log(bad) + off**2 / bad)
+        total -= np.logaddexp(from_good, from_bad)
+    return float(total)

@@ -1,0 +1,155 @@
+"""The compiled robust step against the same written with whole arrays."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from estimator.fusion import physics
+from estimator.fusion.descent import BENT, HALVINGS, INDEFINITE, SOLVED, UNSOLVABLE, descend
+from estimator.fusion.rows import (
+    A_E,
+    B_E,
+    BEARING,
+    CONSTANT,
+    KIND,
+    ONE,
+    OUTLIERS,
+    RANGE,
+    RSSI,
+    SHIFT,
+    SIGMA,
+    SPREAD,
+    VALUE,
+    Row,
+    Single,
+    columns_of,
+    table_of,
+)
+from estimator.graph.dense import Array, Indices
+from estimator.graph.robust import weigh
+from estimator.graph.variable import Variable
+from estimator.measurements.bearing import predict_bearing, wrap
+from estimator.measurements.range import predict_range
+from estimator.measurements.rssi import predict_rssi
+
+N = 12
+"""Two positions, the states of two technologies, and those of a unit, which has only two here."""
+
+
+def some_table(chance: np.random.Generator, m: int) -> Array:
+    """m readings of all kinds, some of them to a fixed end."""
+    pairs, singles = [], []
+    for _ in range(m):
+        kind = int(chance.integers(0, 4))
+        if kind == ONE:
+            value = float(chance.normal(0.0, 4.0))
+            node = Variable("position", str(chance.integers(0, 2)))
+            singles.append(Single(node, int(chance.integers(0, 3)), value, 1.0, physics.FIX_NOISE))
+            continue
+        extra, value, sigma, noise = {
+            RANGE: (6, float(chance.uniform(0.0, 12.0)), 0.3, physics.RANGE_NOISE),
+            RSSI: (8, float(chance.uniform(-80.0, -40.0)), 6.0, physics.RSSI_NOISE),
+            BEARING: (10, float(chance.uniform(-3.0, 3.0)), 0.2, physics.BEARING_NOISE),
+        }[kind]
+        b = int(chance.choice([-1, 3]))
+        pairs.append(
+            Row(
+                kind,
+                0,
+                value,
+                sigma,
+                *noise,
+                sigma,
+                b,
+                extra,
+                0.5,
+                0,
+                0,
+                *chance.normal(0.0, 2.0, 6).tolist(),
+            )
+        )
+    return table_of({Variable("position", "0"): 0, Variable("position", "1"): 3}, singles, pairs)
+
+
+def some_state(chance: np.random.Generator) -> tuple[Array, Array, Array]:
+    start = np.concatenate([chance.normal(0.0, 5.0, 6), [0.0, 0.1, -45.0, 2.2, 0.1, 0.0]])
+    half = chance.normal(0.0, 1.0, (N, 2 * N))
+    return half @ half.T / 20.0, chance.normal(0.0, 0.3, N), start
+
+
+def linearise_plainly(table: Array, columns: Indices, x: Array) -> tuple[Array, Array]:
+    used = (columns >= 0).astype(float)
+    here = x[np.maximum(columns, 0)] * used
+    a, b = here[:, :3] + table[:, A_E : A_E + 3], here[:, 3:6] + table[:, B_E : B_E + 3]
+    first, second = here[:, 6] + table[:, CONSTANT], here[:, 7]
+    jacobian, residual = np.zeros((len(table), 8)), table[:, VALUE] - here[:, 0]
+    jacobian[:, 0] = 1.0
+    for kind, got in (
+        (RANGE, predict_range(a, b, first, second)),
+        (RSSI, predict_rssi(a, b, first, second)),
+        (BEARING, predict_bearing(a, b, first)),
+    ):
+        mine = table[:, KIND] == kind
+        off = table[:, VALUE] - got.predicted
+        residual[mine] = (wrap(off) if kind == BEARING else off)[mine]
+        jacobian[mine] = np.concatenate([got.by_a, got.by_b, got.by_extra], axis=1)[mine]
+    return jacobian * used, residual
+
+
+def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, iterations: int) -> Array:
+    """Gauss-Newton of `descend`, in dense matrices and without its short cuts."""
+    columns = columns_of(table)
+    sigma, outliers, shift, spread = (table[:, c].copy() for c in (SIGMA, OUTLIERS, SHIFT, SPREAD))
+
+    def dense(x: Array) -> tuple[Array, Array]:
+        jacobian, residual = linearise_plainly(table, columns, x)
+        whole = np.zeros((len(table), N))
+        np.add.at(whole, (np.arange(len(table))[:, None], columns), jacobian)
+        return whole, residual
+
+    def misfit(residual: Array, moved: Array) -> float:
+        good, bad = sigma**2, sigma**2 + spread**2
+        from_good = np.log1p(-outliers) - 0.5 * (np.log(good) + residual**2 / good)
+        from_bad = np.log(outliers) - 0.5 * (np.log(bad) + (residual - shift) ** 2 / bad)
+        return float(0.5 * moved @ prior @ moved - pull @ moved - np.logaddexp(from_good, from_bad).sum())
+
+    x, matrix = start, prior
+    whole, residual = dense(x)
+    predicted = np.einsum("mi,ij,mj->m", whole, np.linalg.inv(prior), whole)
+    cost = misfit(residual, x - start)
+    for _ in range(iterations):
+        weighted = weigh(residual, sigma, predicted, outliers, shift, spread)
+        matrix = prior + whole.T @ (whole * weighted.information[:, None])
+        gradient = pull - prior @ (x - start) + whole.T @ (weighted.information * weighted.residual)
+        step, before, linear = np.linalg.solve(matrix, gradient), x, residual
+        for _ in range(HALVINGS):
+            x = before + step
+            ahead, residual = dense(x)
+            reached = misfit(residual, x - start)
+            if reached <= cost + 1.0:
+                break
+            step = 0.5 * step
+        cost = reached
+        forecast = linear - whole @ (x - before)
+        if (np.abs(residual - forecast) < BENT * np.sqrt(sigma**2 + predicted)).all():
+            break
+        whole = ahead
+        predicted = np.einsum("mi,ij,mj->m", whole, np.linalg.inv(matrix), whole)
+    return x
+
+
+@given(st.integers(0, 10_000), st.integers(1, 12))
+def test_the_compiled_descent_finds_what_whole_arrays_find(seed: int, m: int) -> None:
+    chance = np.random.default_rng(seed)
+    table, (prior, pull, start) = some_table(chance, m), some_state(chance)
+    found = descend(table, prior, pull, start, 6)
+    assert found.outcome == SOLVED
+    assert found.x == pytest.approx(descend_plainly(table, prior, pull, start, 6), abs=1e-6)
+
+
+def test_an_information_matrix_that_is_not_positive_definite_is_told_apart() -> None:
+    chance = np.random.default_rng(1)
+    table, (prior, pull, start) = some_table(chance, 3), some_state(chance)
+    assert descend(table, -prior, pull, start, 6).outcome == INDEFINITE
+    assert descend(table, prior, np.full(N, np.nan), start, 6).outcome == UNSOLVABLE

@@ -1,0 +1,95 @@
+"""The compiled loops of the Kirchhoff state against numpy's own."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from estimator.graph.dense import Array
+from estimator.graph.filter_kernels import BLOCK, carry, factorised, loosen, scatter, solved
+
+
+def positive(chance: np.random.Generator, n: int) -> Array:
+    """A positive definite matrix whose rows differ in size as metres and rad/s do."""
+    half, scale = chance.normal(0.0, 1.0, (n, 2 * n)), 10.0 ** chance.uniform(-3.0, 3.0, n)
+    matrix: Array = half @ half.T * scale[:, None] * scale
+    return matrix
+
+
+@given(st.integers(0, 10_000), st.integers(1, 3 * BLOCK))
+def test_factor_and_solution_are_those_of_numpy(seed: int, n: int) -> None:
+    chance = np.random.default_rng(seed)
+    matrix, right = positive(chance, n), chance.normal(0.0, 1.0, n)
+    factor, unscale = np.zeros((n, n)), np.empty(n)
+    assert factorised(matrix, factor, unscale)
+    upper = np.triu(factor) / unscale
+    scale = np.sqrt(np.diagonal(matrix))
+    assert upper.T @ upper / scale / scale[:, None] == pytest.approx(
+        matrix / scale / scale[:, None], abs=1e-12
+    )
+    answer = solved(factor, unscale, right)
+    assert answer * scale == pytest.approx(np.linalg.solve(matrix / scale / scale[:, None], right / scale))
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -1.0, 0.0])
+def test_what_is_not_finite_or_not_positive_definite_is_refused(bad: float) -> None:
+    for place in (0, BLOCK + 3):
+        matrix = np.eye(BLOCK + 4)
+        matrix[place, place] = bad
+        assert not factorised(matrix, np.zeros(matrix.shape), np.empty(len(matrix)))
+    matrix = np.ones((3, 3))
+    matrix[0, 2] = matrix[2, 0] = bad or 2.0
+    assert not factorised(matrix, np.zeros((3, 3)), np.empty(3))
+
+
+def test_what_only_rounding_has_made_indefinite_is_raised_by_as_little_as_lets_it_pass() -> None:
+    matrix = np.ones((4, 4)) - 1e-12 * np.eye(4)
+    factor, unscale = np.zeros((4, 4)), np.empty(4)
+    assert factorised(matrix, factor, unscale)
+    upper = np.triu(factor)
+    assert np.abs(upper.T @ upper - matrix).max() < 1e-10
+
+
+def test_measurements_are_added_where_their_columns_point() -> None:
+    chance = np.random.default_rng(2)
+    columns = np.array([[0, 4, 0], [2, 3, 5]])
+    jacobian = chance.normal(0.0, 1.0, (2, 3))
+    jacobian[0, 2] = 0.0
+    information, residual = np.array([2.0, 0.5]), np.array([1.0, -3.0])
+    matrix, vector = np.zeros((6, 6)), np.zeros(6)
+    scatter(matrix, vector, columns, jacobian, information, residual)
+    whole = np.zeros((2, 6))
+    np.add.at(whole, (np.arange(2)[:, None], columns), jacobian)
+    assert matrix == pytest.approx(whole.T @ np.diag(information) @ whole)
+    assert vector == pytest.approx(whole.T @ (information * residual))
+
+
+@given(st.integers(0, 10_000), st.integers(1, 4))
+def test_moving_groups_is_moving_the_covariance_and_the_mean(seed: int, groups: int) -> None:
+    """Σ' = F Σ Fᵀ + Q, in storage with spare rows that stay as they are."""
+    chance = np.random.default_rng(seed)
+    n, spare = 6 * groups + 5, 3
+    rows = chance.permutation(n)[: 6 * groups].reshape(groups, 6)
+    matrix, vector = np.full((n + spare, n + spare), 7.0), np.full(n + spare, 7.0)
+    half = chance.normal(0.0, 1.0, (n, 2 * n))
+    matrix[:n, :n], vector[:n] = half @ half.T, chance.normal(0.0, 1.0, n)
+    transition = np.eye(6) + chance.normal(0.0, 0.1, (groups, 6, 6))
+    noise = np.eye(6) * chance.uniform(0.01, 1.0, (groups, 1, 6))
+    whole, added = np.eye(n), np.zeros((n, n))
+    for i, own in enumerate(rows):
+        whole[np.ix_(own, own)], added[np.ix_(own, own)] = transition[i], noise[i]
+    mean, covariance = np.linalg.solve(matrix[:n, :n], vector[:n]), np.linalg.inv(matrix[:n, :n])
+    kernel = carry(matrix, vector, n, rows, transition, noise)
+    assert loosen(matrix, vector, n, rows.ravel(), kernel)
+    assert np.linalg.inv(matrix[:n, :n]) == pytest.approx(whole @ covariance @ whole.T + added)
+    assert np.linalg.solve(matrix[:n, :n], vector[:n]) == pytest.approx(whole @ mean)
+    assert (matrix[:n, :n] == matrix[:n, :n].T).all()
+    assert (matrix[n:] == 7.0).all()
+    assert (vector[n:] == 7.0).all()
+
+
+def test_a_kernel_that_is_not_positive_definite_changes_nothing() -> None:
+    matrix, vector = np.eye(4), np.ones(4)
+    assert not loosen(matrix, vector, 4, np.arange(2), -np.eye(2))
+    assert (matrix == np.eye(4)).all()
+    assert (vector == 1.0).all()
