@@ -17,136 +17,226 @@ def scatter_rows(
     information: Array,
     residual: Array,
     diagonal: Array,
-    border: Array,
+    wide: Array,
     corner: Array,
-    gradient: Array,
     corner_gradient: Array,
 ) -> None:
     """Add HᵀP⁻¹H and HᵀP⁻¹r of m readings to a chain.
 
     Args:
         slab: keyframe that each reading belongs to, m; any where it touches none.
-        columns: which numbers it depends on, m × k: those of the keyframe first (below its width), those of
+        columns: which numbers it depends on, m × c: those of the keyframe first (below its width), those of
             the border after them; −1: unused.
-        jacobian: derivatives, m × k.
+        jacobian: derivatives, m × c.
         information: P⁻¹, m.
         residual: z − h(x), m.
         diagonal: k × n × n, changed.
-        border: k × n × s, changed.
+        wide: border and gradient of each keyframe, k × n × (s + 1), changed.
         corner: s × s, changed.
-        gradient: k × n, changed.
         corner_gradient: s, changed.
     """
-    width = diagonal.shape[1]
-    m, k = columns.shape
+    width, lasting = diagonal.shape[1], len(corner_gradient)
+    m, most = columns.shape
+    column, slope = np.empty(most, dtype=np.int64), np.empty(most)
     for r in range(m):
-        w = information[r]
-        j = slab[r]
-        for a in range(k):
-            ca = columns[r, a]
-            ja = jacobian[r, a]
-            if ca < 0 or ja == 0.0:
-                continue
-            pulled = ja * w
+        used = 0
+        for a in range(most):
+            if columns[r, a] >= 0 and jacobian[r, a] != 0.0:
+                column[used], slope[used] = columns[r, a], jacobian[r, a]
+                used += 1
+        square, beside = diagonal[slab[r]], wide[slab[r]]
+        for a in range(used):
+            ca = column[a]
+            pulled = slope[a] * information[r]
             if ca < width:
-                gradient[j, ca] += pulled * residual[r]
+                beside[ca, lasting] += pulled * residual[r]
+                for b in range(used):
+                    cb = column[b]
+                    if cb < width:
+                        square[ca, cb] += pulled * slope[b]
+                    else:
+                        beside[ca, cb - width] += pulled * slope[b]
             else:
                 corner_gradient[ca - width] += pulled * residual[r]
-            for b in range(k):
-                cb = columns[r, b]
-                jb = jacobian[r, b]
-                if cb < 0 or jb == 0.0:
-                    continue
-                if ca < width:
-                    if cb < width:
-                        diagonal[j, ca, cb] += pulled * jb
-                    else:
-                        border[j, ca, cb - width] += pulled * jb
-                elif cb >= width:
-                    corner[ca - width, cb - width] += pulled * jb
+                for b in range(used):
+                    if column[b] >= width:
+                        corner[ca - width, column[b] - width] += pulled * slope[b]
 
 
 @njit(cache=True)
-def eliminate(
+def add_motion(
+    block: int,
     first: int,
-    last: int,
+    transition: Array,
+    information: Array,
+    residual: Array,
     diagonal: Array,
     link: Array,
-    border: Array,
-    gradient: Array,
-    factors: Array,
+    wide: Array,
 ) -> None:
+    """Add the motion of one node to a chain: x' − F x = r with information Q⁻¹, step after step.
+
+    Args:
+        block: which of the keyframe's blocks of b numbers is the node's.
+        first: keyframe that its first step leaves from.
+        transition: F, m × b × b.
+        information: Q⁻¹, m × b × b.
+        residual: r, m × b.
+        diagonal: k × n × n, changed.
+        link: (k − 1) × blocks × b × b, changed.
+        wide: k × n × (s + 1), its last column changed.
+    """
+    m, size = residual.shape
+    at, last = block * size, wide.shape[2] - 1
+    pulled = np.empty((size, size))
+    for step in range(m):
+        before, after = first + step, first + step + 1
+        known, way = information[step], transition[step]
+        for r in range(size):
+            for c in range(size):
+                total = 0.0
+                for i in range(size):
+                    total += way[i, r] * known[i, c]
+                pulled[r, c] = total
+        for r in range(size):
+            for c in range(size):
+                total = 0.0
+                for i in range(size):
+                    total += pulled[r, i] * way[i, c]
+                diagonal[before, at + r, at + c] += total
+                diagonal[after, at + r, at + c] += known[r, c]
+                link[before, block, c, r] -= pulled[r, c]
+                wide[before, at + r, last] += pulled[r, c] * residual[step, c]
+                wide[after, at + r, last] -= known[r, c] * residual[step, c]
+
+
+@njit(cache=True)
+def half_inverse(matrix: Array) -> bool:
+    """C⁻¹ of A = C Cᵀ in the place of A, n × n, lower triangle: A⁻¹ = C⁻ᵀ C⁻¹.
+
+    Rows of A and of what becomes C⁻¹ are reduced together, above and below the diagonal.
+
+    Returns:
+        False where A is not positive definite: then it is spoilt.
+    """
+    n = len(matrix)
+    for j in range(n):
+        pivot = matrix[j]
+        if not pivot[j] > 0.0:
+            return False
+        scale = 1.0 / np.sqrt(pivot[j])
+        for c in range(n):
+            pivot[c] *= scale
+        pivot[j] = scale
+        for i in range(j + 1, n):
+            row, share = matrix[i], pivot[i]
+            row[j] = 0.0
+            for c in range(j + 1):
+                row[c] -= share * pivot[c]
+            for c in range(i, n):
+                row[c] -= share * pivot[c]
+    for j in range(n):
+        matrix[j, j + 1 :] = 0.0
+    return True
+
+
+@njit(cache=True)
+def times_link(matrix: Array, blocks: Array, product: Array) -> None:
+    """A Eᵀ, n × n, for a matrix A and a link E of blocks along its diagonal (blocks × b × b)."""
+    count, size, _ = blocks.shape
+    turned = np.empty((size, size))
+    for block in range(count):
+        at = block * size
+        for c in range(size):
+            for i in range(size):
+                turned[i, c] = blocks[block, c, i]
+        for r in range(len(matrix)):
+            row = product[r]
+            for c in range(size):
+                row[at + c] = 0.0
+            for i in range(size):
+                share = matrix[r, at + i]
+                if share != 0.0:
+                    for c in range(size):
+                        row[at + c] += share * turned[i, c]
+
+
+@njit(cache=True)
+def eliminate(first: int, last: int, diagonal: Array, link: Array, wide: Array) -> int:
     """Operation 3 of paper A (eq. 17) for keyframes `first` to `last` − 1, one after the other.
 
-    What it needs to go back stays in the place of what it used: W = C⁻¹ [Eᵀ B g], and C⁻¹ in `factors`. What
-    the border loses by it, Wᵀ W, is left to be taken off at once.
+    What it needs to go back stays in the place of what it used: C⁻¹ in `diagonal`, W = C⁻¹ [B g] in `wide`.
+    What the border loses by it, Wᵀ W, is left to be taken off at once.
 
     Args:
         first: keyframe to begin with.
         last: keyframe to stop before.
         diagonal: D, k × n × n.
-        link: E, keyframe j + 1 by keyframe j, (k − 1) × n × n; left as W of the same shape, transposed.
-        border: B, k × n × s.
-        gradient: g, k × n.
-        factors: takes C⁻¹, k × n × n.
+        link: E, keyframe j + 1 by keyframe j, blocks along its diagonal, (k − 1) × blocks × b × b.
+        wide: B and g, k × n × (s + 1).
+
+    Returns:
+        The keyframe that could not be eliminated, as it is after those before it; `last`: there is none.
     """
-    length, width = gradient.shape
+    length, width, across = wide.shape
+    inverse, half = np.empty((width, width)), np.empty((width, width))
+    done, lost, taken = np.empty((width, across)), np.empty((width, width)), np.empty((width, across))
     for j in range(first, last):
-        lower = np.linalg.cholesky(diagonal[j])
-        inverse = np.zeros((width, width))
-        for c in range(width):
-            inverse[c, c] = 1.0 / lower[c, c]
-            for r in range(c + 1, width):
-                total = 0.0
-                for i in range(c, r):
-                    total += lower[r, i] * inverse[i, c]
-                inverse[r, c] = -total / lower[r, r]
-        factors[j] = inverse
-        wide = np.dot(inverse, border[j])
-        pull = np.dot(inverse, gradient[j])
-        border[j] = wide
-        gradient[j] = pull
+        inverse[:] = diagonal[j]
+        if not half_inverse(inverse):
+            return j
+        diagonal[j] = inverse
+        np.dot(inverse, wide[j], done)
+        wide[j] = done
         if j < length - 1:
-            half = np.dot(inverse, link[j].T.copy())
-            back = half.T.copy()
-            diagonal[j + 1] -= np.dot(back, half)
-            border[j + 1] -= np.dot(back, wide)
-            gradient[j + 1] -= np.dot(back, pull)
-            link[j] = back
+            times_link(inverse, link[j], half)
+            np.dot(half.T, half, lost)
+            np.dot(half.T, done, taken)
+            diagonal[j + 1] -= lost
+            wide[j + 1] -= taken
+    return last
 
 
 @njit(cache=True)
-def substitute(
-    factors: Array, link: Array, border: Array, gradient: Array, fixed: Array, last: int, steps: Array
-) -> None:
-    """Steps of the keyframes before `last`, from its end back; `steps` (k × n) holds those from `last` on."""
-    length = len(gradient)
-    for j in range(last - 1, -1, -1):
-        right = gradient[j] - np.dot(border[j], fixed)
+def substitute(diagonal: Array, link: Array, wide: Array, fixed: Array, steps: Array) -> None:
+    """Steps of all keyframes (k × n) after `eliminate`, from the end back, for a step of the border (s)."""
+    length, width, across = wide.shape
+    size = link.shape[2]
+    tail, carried = np.ones(across), np.empty(width)
+    tail[: across - 1] = -fixed
+    for j in range(length - 1, -1, -1):
+        right = np.dot(wide[j], tail)
         if j < length - 1:
-            right -= np.dot(link[j].T, steps[j + 1])
-        steps[j] = np.dot(factors[j].T, right)
+            for c in range(width):
+                at = c // size * size
+                carried[c] = 0.0
+                for i in range(size):
+                    carried[c] += link[j, c // size, i, c - at] * steps[j + 1, at + i]
+            right -= np.dot(diagonal[j], carried)
+        steps[j] = np.dot(diagonal[j].T, right)
 
 
 @njit(cache=True)
 def selected_inverse(
-    factors: Array, link: Array, border: Array, border_covariance: Array, found: Array, ahead: Array
+    diagonal: Array, link: Array, wide: Array, border_covariance: Array, found: Array, ahead: Array
 ) -> None:
-    """Covariance of each keyframe (`found`, k × n × n) and with the next (`ahead`, (k − 1) × n × n)."""
-    length, width, lasting = border.shape
-    next_border = np.zeros((width, lasting))
+    """After `eliminate`: covariance of each keyframe (`found`, k × n × n) and with the next (`ahead`)."""
+    length, width, across = wide.shape
+    next_border = np.zeros((width, across - 1))
+    to_next = np.empty((width, width))
     for j in range(length - 1, -1, -1):
-        back = factors[j].T.copy()
-        to_border = -np.dot(back, border[j])
+        back = diagonal[j].T
+        border = wide[j, :, : across - 1].copy()
+        to_border = -np.dot(back, border)
         with_border = np.dot(to_border, border_covariance)
-        covariance = np.dot(back, factors[j])
+        covariance = np.dot(back, diagonal[j])
         if j < length - 1:
-            to_next = -np.dot(back, link[j].T.copy())
-            with_next = np.dot(to_next, found[j + 1]) + np.dot(to_border, next_border.T.copy())
+            times_link(-covariance, link[j], to_next)
+            with_next = np.dot(to_next, found[j + 1]) + np.dot(to_border, next_border.T)
             with_border += np.dot(to_next, next_border)
-            covariance += np.dot(with_next, to_next.T.copy())
+            covariance += np.dot(with_next, to_next.T)
             ahead[j] = with_next
-        covariance += np.dot(with_border, to_border.T.copy())
+        covariance += np.dot(with_border, to_border.T)
         found[j] = 0.5 * (covariance + covariance.T)
         next_border = with_border
 

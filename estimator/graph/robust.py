@@ -71,3 +71,26 @@ def weigh(
         information[i] = from_good + from_bad
         pulled[i] = residual[i] - shift[i] * from_bad / information[i]
     return Weighted(information, pulled, good)
+
+
+def mixture_cost(residual: Array, sigma: Array, outliers: Array, shift: Array, spread: Array) -> Array:
+    """Negative log likelihood of each reading up to a constant: what `weigh` descends, m.
+
+    Args:
+        residual: z − h(x), m.
+        sigma: standard deviation of the good noise, m.
+        outliers: see `Mixture`, m.
+        shift: see `Mixture`, m.
+        spread: see `Mixture`, m.
+    """
+    good = sigma**2
+    bad = good + spread**2
+    from_good = np.log1p(-outliers) - 0.5 * (np.log(good) + residual**2 / good)
+    from_bad = np.log(outliers) - 0.5 * (np.log(bad) + (residual - shift) ** 2 / bad)
+    return -np.logaddexp(from_good, from_bad)
+
+
+def cauchy_cost(residual: Array, scale: float) -> Array:
+    """Cauchy loss c²/2 log(1 + (r / c)²) of whitened residuals (m), c = `scale`."""
+    cost: Array = 0.5 * scale**2 * np.log1p((residual / scale) ** 2)
+    return cost

@@ -6,6 +6,7 @@ from estimator.fusion.descent import descend
 from estimator.fusion.rows import FIELDS
 from estimator.fusion.update import tally
 from estimator.graph.kernels import (
+    add_motion,
     eliminate,
     scatter_rows,
     selected_inverse,
@@ -19,6 +20,9 @@ from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.displacement import move
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
+from estimator.smoothing.ends import Table, place_ends
+from estimator.smoothing.linear import ANY, Readings, bends, jacobians, residuals
+from estimator.smoothing.walks import STATES, inverses, led_by, misfit, unit_motion
 
 
 def warm_up() -> None:
@@ -36,17 +40,30 @@ def warm_up() -> None:
 
 def _warm_chain() -> None:
     """On the smallest chain there is."""
-    k, n, s = 2, 1, 1
-    diagonal, link, border = np.ones((k, n, n)), np.zeros((k - 1, n, n)), np.zeros((k, n, s))
-    corner, gradient, rest = np.ones((s, s)), np.zeros((k, n)), np.zeros(s)
-    slab, columns = np.zeros(1, dtype=np.int64), np.zeros((1, 14), dtype=np.int64)
-    one = np.ones(1)
-    scatter_rows(slab, columns, np.zeros((1, 14)), one, one, diagonal, border, corner, gradient, rest)
-    factors = np.zeros((k, n, n))
-    eliminate(0, k, diagonal, link, border, gradient, factors)
-    substitute(factors, link, border, gradient, rest, k, np.zeros((k, n)))
-    selected_inverse(factors, link, border, corner, np.zeros((k, n, n)), np.zeros((k - 1, n, n)))
+    k, n, s = 2, STATES, 1
+    diagonal, link = np.zeros((k, n, n)) + np.eye(n), np.zeros((k - 1, 1, n, n))
+    wide, corner, rest = np.zeros((k, n, s + 1)), np.ones((s, s)), np.zeros(s)
+    slab, columns = np.zeros(1, dtype=np.int64), np.zeros((1, ANY), dtype=np.int64)
+    one, x = np.ones(1), np.zeros(n)
+    scatter_rows(slab, columns, np.zeros((1, ANY)), one, one, diagonal, wide, corner, rest)
+    between, states = np.zeros((1, 12)), np.zeros((k, n))
+    motion = unit_motion(between, one, states)
+    misfit(motion)
+    inverses(motion.noise)
+    led_by(states, np.zeros((k, 12))[:, :3], np.zeros((k, 12))[:, 3:6], np.ones(k))
+    add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)
+    eliminate(0, k, diagonal, link, wide)
+    substitute(diagonal, link, wide, rest, np.zeros((k, n)))
+    selected_inverse(diagonal, link, wide, corner, np.zeros((k, n, n)), np.zeros((k - 1, n, n)))
     strongest(one, one, one, 1.0, 1)
+    place = np.zeros((1, 3))
+    end = Table(slab, np.zeros((1, STATES), dtype=np.int64), place, place, place, one)
+    place_ends(end, x)
+    pair = np.zeros((1, 2), dtype=np.int64)
+    readings = Readings(slab, one, one, pair, end, end, slab, one, end, end, end)
+    residuals(readings, x)
+    jacobians(readings, x)
+    bends(readings, x, one, one, True)
 
 
 def _warm_filter() -> None:

@@ -16,8 +16,6 @@ import numpy as np
 from estimator.graph.dense import Array, factorise, inverse, mended, solve
 from estimator.graph.kernels import eliminate, selected_inverse, substitute
 
-JITTERS = (0.0, 1e-12, 1e-10, 1e-8)
-
 
 class Remainder(NamedTuple):
     """What the keyframes before one say of it and of the border: a Kirchhoff matrix and its vector.
@@ -36,25 +34,34 @@ class Chain:
 
     Attributes:
         diagonal: D, k × n × n.
-        link: E, keyframe j + 1 by keyframe j, (k − 1) × n × n.
-        border: B, k × n × s.
+        link: E, keyframe j + 1 by keyframe j, (k − 1) × blocks × b × b: a node's next step depends on no
+            other's, so there are only blocks along its diagonal.
+        wide: B and the gradient of the keyframes beside it, k × n × (s + 1).
         corner: C, s × s.
-        gradient: of the keyframes, k × n.
         corner_gradient: of the border, s.
         steps: of the keyframes, k × n, after `solve`.
         fixed: of the border, s, after `solve`.
     """
 
-    def __init__(self, length: int, width: int, border: int) -> None:
+    def __init__(self, length: int, width: int, border: int, blocks: int) -> None:
+        size = width // max(blocks, 1)
         self.diagonal: Array = np.zeros((length, width, width))
-        self.link: Array = np.zeros((max(length - 1, 0), width, width))
-        self.border: Array = np.zeros((length, width, border))
+        self.link: Array = np.zeros((max(length - 1, 0), blocks, size, size))
+        self.wide: Array = np.zeros((length, width, border + 1))
         self.corner: Array = np.zeros((border, border))
-        self.gradient: Array = np.zeros((length, width))
         self.corner_gradient: Array = np.zeros(border)
-        self._factors: Array = np.zeros((length, width, width))
         self._covariance: Array = np.zeros((border, border))
         self._done = 0
+
+    @property
+    def border(self) -> Array:
+        """B, k × n × s."""
+        return self.wide[:, :, :-1]
+
+    @property
+    def gradient(self) -> Array:
+        """Of the keyframes, k × n."""
+        return self.wide[:, :, -1]
 
     def damp(self, damping: float) -> None:
         """Raise the diagonal by a share of itself (Marquardt): a shorter step, and more along the slope."""
@@ -84,52 +91,46 @@ class Chain:
             0.5 * (matrix + matrix.T), np.concatenate([self.gradient[keyframe], self.corner_gradient])
         )
 
-    def _eliminate(self, until: int) -> None:
+    def _eliminate(self, until: int, mend: bool = True) -> None:
         if until <= self._done:
             return
         if not np.isfinite(self.diagonal).all():
             raise ValueError("the normal equations of the incident are not finite")
-        width = range(self.diagonal.shape[1])
-        kept = [a.copy() for a in (self.diagonal, self.link, self.border, self.gradient)]
-        for jitter in JITTERS:
-            self.diagonal[:, width, width] *= 1.0 + jitter
-            try:
-                eliminate(
-                    self._done,
-                    until,
-                    self.diagonal,
-                    self.link,
-                    self.border,
-                    self.gradient,
-                    self._factors,
-                )
-            except np.linalg.LinAlgError:
-                self.diagonal, self.link, self.border, self.gradient = (a.copy() for a in kept)
-                continue
-            count = (until - self._done) * self.diagonal.shape[1]
-            wide = self.border[self._done : until].reshape(count, len(self.corner))
-            self.corner -= wide.T @ wide
-            self.corner_gradient -= wide.T @ self.gradient[self._done : until].ravel()
-            self._done = until
-            return
-        raise ValueError("the normal equations of the incident are not positive definite")
+        at, mended_at = self._done, -1
+        while at < until:
+            at = eliminate(at, until, self.diagonal, self.link, self.wide)
+            if at < until:
+                if not mend or at == mended_at or not np.isfinite(self.diagonal[at]).all():
+                    raise ValueError("the normal equations of the incident are not positive definite")
+                self.diagonal[at] = mended(self.diagonal[at])
+                mended_at = at
+        wide = self.wide[self._done : until].reshape(-1, self.wide.shape[2])
+        taken = wide.T @ wide
+        self.corner -= taken[:-1, :-1]
+        self.corner_gradient -= taken[:-1, -1]
+        self._done = until
 
-    def solve(self) -> tuple[Array, Array]:
+    def solve(self, mend: bool = True) -> tuple[Array, Array]:
         """The step of all keyframes, k × n, and of the border, s; the arrays are used up.
+
+        Args:
+            mend: whether what is not positive definite is for rounding to answer for.
 
         Raises:
             ValueError: the matrix is not finite, or far from positive definite.
         """
         length, width, _ = self.diagonal.shape
-        self._eliminate(length)
+        self._eliminate(length, mend)
         try:
             cholesky = factorise(self.corner)
         except ValueError:
+            if not mend:
+                raise
             cholesky = factorise(mended(self.corner))
         self._covariance = inverse(cholesky)
         self.fixed = solve(cholesky, self.corner_gradient)
         self.steps: Array = np.zeros((length, width))
-        substitute(self._factors, self.link, self.border, self.gradient, self.fixed, length, self.steps)
+        substitute(self.diagonal, self.link, self.wide, self.fixed, self.steps)
         return self.steps, self.fixed
 
     def response(self, right: Array, corner: Array) -> tuple[Array, Array]:
@@ -139,18 +140,22 @@ class Chain:
             right: of the keyframes, k × n × c.
             corner: of the border, s × c.
         """
+        length, width, count = right.shape
+        blocks, size = self.link.shape[1:3]
         y, rest = right.copy(), corner.copy()
-        for j in range(len(y)):
-            y[j] = self._factors[j] @ y[j]
+        for j in range(length):
+            y[j] = self.diagonal[j] @ y[j]
             rest -= self.border[j].T @ y[j]
-            if j < len(y) - 1:
-                y[j + 1] -= self.link[j] @ y[j]
+            if j < length - 1:
+                back = (self.diagonal[j].T @ y[j]).reshape(blocks, size, count)
+                y[j + 1] -= (self.link[j] @ back).reshape(width, count)
         fixed: Array = self._covariance @ rest
-        for j in range(len(y) - 1, -1, -1):
-            back = y[j] - self.border[j] @ fixed
-            if j < len(y) - 1:
-                back -= self.link[j].T @ y[j + 1]
-            y[j] = self._factors[j].T @ back
+        for j in range(length - 1, -1, -1):
+            ahead = y[j] - self.border[j] @ fixed
+            if j < length - 1:
+                after = self.link[j].transpose(0, 2, 1) @ y[j + 1].reshape(blocks, size, count)
+                ahead -= self.diagonal[j] @ after.reshape(width, count)
+            y[j] = self.diagonal[j].T @ ahead
         return y, fixed
 
     def covariances(self) -> tuple[Array, Array, Array]:
@@ -159,6 +164,7 @@ class Chain:
         The selected inverse, from the chain's end back to its start: only what the next keyframe and the
         border need is ever formed.
         """
-        found, ahead = np.zeros_like(self.diagonal), np.zeros_like(self.link)
-        selected_inverse(self._factors, self.link, self.border, self._covariance, found, ahead)
+        length, width, _ = self.diagonal.shape
+        found, ahead = np.zeros((length, width, width)), np.zeros((max(length - 1, 0), width, width))
+        selected_inverse(self.diagonal, self.link, self.wide, self._covariance, found, ahead)
         return found, ahead, self._covariance

@@ -1,11 +1,15 @@
 """Where the ends of readings are, for any estimate: keyframes with what was walked since, or what stands."""
 
+from typing import NamedTuple
+
 import numpy as np
+from numba import njit
+from numpy.typing import NDArray
 
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.smoothing.layout import Layout
-from estimator.smoothing.walks import STATES, led_by
+from estimator.smoothing.walks import STATES, lead
 
 FIXED, STANDING, UNIT, FREE, UNPLACED = range(5)
 
@@ -23,6 +27,64 @@ def kinds_of(layout: Layout, numbers: Integers) -> Integers:
     return np.asarray(table[numbers])
 
 
+class Table(NamedTuple):
+    """m ends of readings as numbers.
+
+    Attributes:
+        kind: what node each is of, m.
+        at: where its numbers are in the flat unknowns, m × 6; 0 where there is none.
+        fixed_m: where it is, if it is fixed, m × 3 (m).
+        delta_m: displacement since its keyframe, in the unit's frame, m × 3 (m).
+        moment: its first moment, m × 3 (m s).
+        duration_s: time since its keyframe, m (s).
+    """
+
+    kind: Integers
+    at: Integers
+    fixed_m: Array
+    delta_m: Array
+    moment: Array
+    duration_s: Array
+
+
+class Places(NamedTuple):
+    """Where m ends are.
+
+    Attributes:
+        place: positions, m × 3 (m); their derivatives by the first three columns are 1, if there are any.
+        turned: derivatives by the last three columns, m × 3 × 3.
+    """
+
+    place: Array
+    turned: Array
+
+
+@njit(cache=True)
+def place_ends(ends: Table, x: Array) -> Places:
+    """Where m ends are at an estimate x, flat."""
+    m = len(ends.kind)
+    place, turned = ends.fixed_m.copy(), np.zeros((m, 3, 3))
+    for i in range(m):
+        kind, at = ends.kind[i], ends.at[i]
+        if kind in (STANDING, UNIT, FREE):
+            for c in range(3):
+                place[i, c] = x[at[c]]
+        if kind == UNIT:
+            led = lead(x[at[3]], x[at[4]], 1.0 + x[at[5]], ends.delta_m[i], ends.moment[i])
+            place[i, 0] += led.east
+            place[i, 1] += led.north
+            place[i, 2] += led.up
+            turned[i, 0, 0], turned[i, 1, 0] = led.by_heading_e, led.by_heading_n
+            turned[i, 0, 1], turned[i, 1, 1] = led.by_bias_e, led.by_bias_n
+            turned[i, 0, 2], turned[i, 1, 2] = led.by_scale_e, led.by_scale_n
+            turned[i, 2, 2] = ends.delta_m[i, 2]
+        elif kind == FREE:
+            for c in range(3):
+                place[i, c] += x[at[3 + c]] * ends.duration_s[i]
+                turned[i, c, c] = ends.duration_s[i]
+    return Places(place, turned)
+
+
 class Ends:
     """m ends of readings.
 
@@ -30,26 +92,28 @@ class Ends:
         slab: keyframe of each, m; 0 where it stands.
         columns: its six columns, m × 6: of the keyframe, or of the border counted after it; −1: none.
         usable: it has a place in the window at its epoch.
+        moving: it is of a node that moves, m.
         unsure_m2: variances that a unit's own noise adds since its keyframe, m × 3 (m²).
+        table: what its place follows from.
     """
 
     def __init__(self, layout: Layout, numbers: Integers, t: Array, nearest: Array) -> None:
         m = len(numbers)
-        self._kinds = kinds_of(layout, numbers)
-        self._size = layout.length * layout.width
+        kinds = kinds_of(layout, numbers)
         self.slab = np.zeros(m, dtype=np.int64)
         self.columns = np.full((m, STATES), -1, dtype=np.int64)
-        self.usable = self._kinds != UNPLACED
-        self._still: Array = np.zeros((m, 3))
-        self._delta: Array = np.zeros((m, 3))
-        self._moment: Array = np.zeros((m, 3))
-        self._duration: Array = np.zeros(m)
+        self.usable = kinds != UNPLACED
         self.unsure_m2: Array = np.zeros((m, 3))
+        fixed_m, delta_m, moment, duration_s = (
+            np.zeros((m, 3)),
+            np.zeros((m, 3)),
+            np.zeros((m, 3)),
+            np.zeros(m),
+        )
         names = layout.state.owners
-        for number in np.unique(numbers[self._kinds == FIXED]).tolist():
-            place = layout.state.nodes[names[number]].place_m
-            self._still[numbers == number] = place
-        for number in np.unique(numbers[self._kinds == STANDING]).tolist():
+        for number in np.unique(numbers[kinds == FIXED]).tolist():
+            fixed_m[numbers == number] = layout.state.nodes[names[number]].place_m
+        for number in np.unique(numbers[kinds == STANDING]).tolist():
             self.columns[numbers == number, :3] = layout.width + layout.stands[number] + np.arange(3)
         preceding = np.searchsorted(layout.grid, t, side="right") - 1
         around = np.clip(preceding, 0, layout.length - 2)
@@ -65,13 +129,21 @@ class Ends:
             self.usable[mine] &= epochs >= layout.times[walk.first, i] - 1e-6
             self.slab[mine] = at
             self.columns[mine] = STATES * i + np.arange(STATES)
-            self._duration[mine] = epochs - since
+            duration_s[mine] = epochs - since
             if walk.way is not None:
                 found = walk.way.between(since, epochs)
-                self._delta[mine], self._moment[mine] = found[:, :3], found[:, 3:6]
+                delta_m[mine], moment[mine] = found[:, :3], found[:, 3:6]
                 self.unsure_m2[mine] = np.abs(found[:, [6, 6, 7]])
-        self.moving = (self._kinds == UNIT) | (self._kinds == FREE)
-        self.unit = self._kinds == UNIT
+        self.moving = (kinds == UNIT) | (kinds == FREE)
+        border = layout.length * layout.width + self.columns - layout.width
+        flat = np.where(self.columns < layout.width, self.slab[:, None] * layout.width + self.columns, border)
+        flat[self.columns < 0] = 0
+        self.table = Table(kinds, flat, fixed_m, delta_m, moment, duration_s)
+
+    @property
+    def unit(self) -> NDArray[np.bool_]:
+        """Whether each is of a node with a PDR unit, m."""
+        return np.asarray(self.table.kind == UNIT)
 
     def take(self, chosen: Array) -> None:
         """Keep only some of the ends.
@@ -79,39 +151,6 @@ class Ends:
         Args:
             chosen: which, m (bool).
         """
-        for name in (
-            "_kinds",
-            "slab",
-            "columns",
-            "usable",
-            "_still",
-            "_delta",
-            "_moment",
-            "_duration",
-            "unsure_m2",
-        ):
-            setattr(self, name, getattr(self, name)[chosen])
-        self.moving, self.unit = self.moving[chosen], self.unit[chosen]
-
-    def flat(self, width: int) -> Integers:
-        """Index of each column in the flat unknowns, m × 6; 0 where there is none."""
-        border = self._size + self.columns - width
-        keyframe = self.slab[:, None] * width + self.columns
-        return np.where(self.columns < 0, 0, np.where(self.columns < width, keyframe, border))
-
-    def place(self, x: Array, width: int) -> tuple[Array, Array]:
-        """Positions, m × 3 (m), and their derivatives by the six columns, m × 3 × 6."""
-        own = np.where(self.columns >= 0, x[self.flat(width)], 0.0)
-        place = self._still + own[:, :3]
-        derivative = np.zeros((len(own), 3, STATES))
-        used = self.columns[:, 0] >= 0
-        derivative[used, :, :3] = np.eye(3)
-        unit = self.unit
-        if unit.any():
-            led, transition = led_by(own[unit], self._delta[unit], self._moment[unit], self._duration[unit])
-            place[unit], derivative[unit] = led[:, :3], transition[:, :3]
-        free = self._kinds == FREE
-        if free.any():
-            place[free] += own[free, 3:] * self._duration[free, None]
-            derivative[free, :, 3:] = np.eye(3) * self._duration[free, None, None]
-        return place, derivative
+        self.slab, self.columns, self.usable = self.slab[chosen], self.columns[chosen], self.usable[chosen]
+        self.moving, self.unsure_m2 = self.moving[chosen], self.unsure_m2[chosen]
+        self.table = Table(*(numbers[chosen] for numbers in self.table))

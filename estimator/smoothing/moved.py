@@ -9,11 +9,12 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from estimator.fusion.ledger import RANGE, RSSI
 from estimator.fusion.modes import CAUCHY, Sought, find_modes
 from estimator.fusion.nodes import NodeState
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
-from estimator.smoothing.rows import RANGE, RSSI
+from estimator.graph.robust import cauchy_cost
 from estimator.smoothing.solve import Problem, Solved
 
 RECENT_S = 120.0
@@ -63,7 +64,7 @@ def moved_nodes(problem: Problem, solved: Solved) -> list[Moved]:
     kinds = rows.pairs[:, 1]
     now = float(problem.layout.grid[-1])
     residual = solved.linear.residual[:m]
-    cost = 0.5 * CAUCHY**2 * np.log1p((residual / rows.sigma[:m] / CAUCHY) ** 2)
+    cost = cauchy_cost(residual / rows.sigma[:m], CAUCHY)
     recent = (rows.pairs[:, 0] > now - RECENT_S) & (kinds <= RSSI)
     found = []
     for node in state.nodes.values():
@@ -116,7 +117,7 @@ def _elsewhere(problem: Problem, solved: Solved, node: NodeState, mine: Integers
         return False
     best = modes[0]
     off = solved.linear.residual[mine] / sigma
-    before = float((0.5 * CAUCHY**2 * np.log1p((off / CAUCHY) ** 2)).sum())
+    before = float(cauchy_cost(off, CAUCHY).sum())
     far = float(np.hypot(*(best.position_m - place)[:2])) > max(FAR_M, 2.0 * best.sigma_m)
     return far and before - best.cost > GAIN and best.cost < len(mine)
 

@@ -5,22 +5,18 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.fusion import physics
+from estimator.fusion.ledger import BEARING, RANGE, RSSI
 from estimator.fusion.noise import LearnedNoise
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
-from estimator.measurements.bearing import predict_bearing, wrap
-from estimator.measurements.range import PairJacobian, predict_range
-from estimator.measurements.rssi import predict_rssi
+from estimator.measurements.bearing import wrap
 from estimator.smoothing.encounters import candidates, near_dbm
-from estimator.smoothing.ends import UNIT, Ends, kinds_of
+from estimator.smoothing.ends import UNIT, Ends, kinds_of, place_ends
 from estimator.smoothing.layout import Layout
-from estimator.smoothing.walks import STATES
+from estimator.smoothing.linear import ANY, Bends, Readings, bends, jacobians, residuals
 
-RANGE, RSSI, BEARING, BODY_BEARING = range(4)
 DROP = len(physics.NOISES) - 1
 NOISES = np.array(physics.NOISES)
-ANY = 14
-"""Numbers that one row depends on at most: two ends of six, two of a technology."""
 
 
 class Linearised(NamedTuple):
@@ -46,18 +42,17 @@ class Rows:
         noise: outliers, shift and spread of each, m × 3.
         nominal: claimed or assumed standard deviation, m.
         source: number of the technology, m; −1: none.
-        link: number of the link, m; −1: none.
-        kept: how much of the error of the link's reading before still holds, m.
+        alike: how many readings of its link share an error, as each counts, m.
         pairs: the ledger's rows of the pairs, as they stand in front.
         singles: those of the singles.
         drops: those of the drops.
     """
 
-    def __init__(self, layout: Layout, since_t: float, until_t: float) -> None:
+    def __init__(self, layout: Layout, since_t: float) -> None:
         self._layout = layout
-        self._pairs(layout, since_t, until_t)
-        self._singles(layout, since_t, until_t)
-        self._drops(layout, since_t, until_t)
+        self._pairs(layout, since_t)
+        self._singles(layout, since_t)
+        self._drops(layout, since_t)
         m, n, d = len(self.pairs), len(self.singles), len(self.drops)
         self.slab: Integers = np.concatenate([self._slab, self._on.slab, np.repeat(self._by.slab, 3)])
         self.columns: Integers = np.full((m + n + 3 * d, ANY), -1, dtype=np.int64)
@@ -75,7 +70,6 @@ class Rows:
         rest = n + 3 * d
         self.source = np.concatenate([self.pairs[:, 6], np.full(rest, -1.0)]).astype(np.int64)
         self.source[:m][self.pairs[:, 1] >= BEARING] = -1
-        self.link = np.concatenate([self.pairs[:, 9], np.full(rest, -1.0)]).astype(np.int64)
         self.alike: Array = np.concatenate([self.pairs[:, 8], np.ones(rest)])
         rssi = np.flatnonzero(self.pairs[:, 1] == RSSI)
         self._strongest = np.zeros(len(self.pairs), dtype=bool)
@@ -84,10 +78,25 @@ class Rows:
         self.sigma: Array = self.nominal.copy()
         self._told: Array = self.sigma
         self.t: Array = np.concatenate([self.pairs[:, 0], self.singles[:, 0], np.repeat(self.drops[:, 0], 3)])
+        size = layout.length * layout.width
+        self._bearings = np.flatnonzero(self.pairs[:, 1] >= BEARING)
+        self._readings = Readings(
+            kind=self.pairs[:, 1].astype(np.int64),
+            value=self.pairs[:, 4].copy(),
+            constant=self.pairs[:, 7].copy(),
+            extra=np.where(self._extra >= 0, size + self._extra - layout.width, 0),
+            a=self._a.table,
+            b=self._b.table,
+            axis=self.singles[:, 2].astype(np.int64),
+            told=self.singles[:, 3].copy(),
+            on=self._on.table,
+            by=self._by.table,
+            crumb=self._crumb.table,
+        )
 
-    def _pairs(self, layout: Layout, since_t: float, until_t: float) -> None:
+    def _pairs(self, layout: Layout, since_t: float) -> None:
         pairs = layout.state.ledger.table("pairs")
-        pairs = pairs[(pairs[:, 0] >= since_t) & (pairs[:, 0] <= until_t)]
+        pairs = pairs[pairs[:, 0] >= since_t]
         numbers = pairs[:, 2:4].astype(np.int64)
         unit = (kinds_of(layout, numbers[:, 0]) == UNIT) | (kinds_of(layout, numbers[:, 1]) == UNIT)
         a, b = (Ends(layout, numbers[:, i], pairs[:, 0], ~unit) for i in (0, 1))
@@ -105,9 +114,9 @@ class Rows:
         self._a, self._b, self._extra = a, b, extra[chosen]
         self._slab = np.where(a.moving, a.slab, b.slab)
 
-    def _singles(self, layout: Layout, since_t: float, until_t: float) -> None:
+    def _singles(self, layout: Layout, since_t: float) -> None:
         singles = layout.state.ledger.table("singles")
-        singles = singles[(singles[:, 0] >= since_t) & (singles[:, 0] <= until_t)]
+        singles = singles[singles[:, 0] >= since_t]
         nothing = np.zeros(len(singles), dtype=bool)
         on = Ends(layout, singles[:, 1].astype(np.int64), singles[:, 0], nothing)
         chosen = on.usable & (on.columns[:, 0] >= 0)
@@ -115,9 +124,9 @@ class Rows:
         self.singles: Array = singles[chosen]
         self._on = on
 
-    def _drops(self, layout: Layout, since_t: float, until_t: float) -> None:
+    def _drops(self, layout: Layout, since_t: float) -> None:
         drops = layout.state.ledger.table("drops")
-        drops = drops[(drops[:, 0] >= since_t) & (drops[:, 0] <= until_t)]
+        drops = drops[drops[:, 0] >= since_t]
         nothing = np.zeros(len(drops), dtype=bool)
         by = Ends(layout, drops[:, 2].astype(np.int64), drops[:, 0], nothing)
         crumb = Ends(layout, drops[:, 1].astype(np.int64), drops[:, 0], nothing)
@@ -168,10 +177,8 @@ class Rows:
         at = np.flatnonzero(self._strongest)
         if not len(at):
             return
-        width, size = self._layout.width, self._layout.length * self._layout.width
-        a, _ = self._a.place(x, width)
-        b, _ = self._b.place(x, width)
-        extra = x[size + self._extra[at] - width]
+        a, b = self.places(x)
+        extra = x[self._readings.extra[at]]
         near = near_dbm(extra[:, 0] + self.pairs[at, 7], extra[:, 1])
         close = np.linalg.norm(a[at] - b[at], axis=1) <= physics.ENCOUNTER_M
         self.sigma[at[close & (self.pairs[at, 4] >= near)]] = physics.NEAR_SIGMA_DB
@@ -181,8 +188,7 @@ class Rows:
 
     def places(self, x: Array) -> tuple[Array, Array]:
         """Where both ends of each pair are at an estimate, m × 3 each (m)."""
-        width = self._layout.width
-        return self._a.place(x, width)[0], self._b.place(x, width)[0]
+        return place_ends(self._a.table, x).place, place_ends(self._b.table, x).place
 
     def by_units(self, source: int) -> bool:
         """Whether nodes with a PDR unit take part in the readings of a technology."""
@@ -191,58 +197,18 @@ class Rows:
 
     def linearise(self, x: Array) -> Linearised:
         """Residuals and derivatives at an estimate x, flat."""
-        width, total = self._layout.width, len(self.slab)
-        m, n = len(self.pairs), len(self.singles)
-        jacobian, residual = np.zeros((total, ANY)), np.zeros(total)
-        self._linearise_pairs(x, jacobian[:m], residual[:m])
-        place, by_own = self._on.place(x, width)
-        axis = self.singles[:, 2].astype(np.int64)
-        own = np.where(self._on.columns >= 0, x[self._on.flat(width)], 0.0)
-        placed = axis < 3
-        rows = np.arange(n)
-        predicted = np.where(placed, place[rows, np.minimum(axis, 2)], own[rows, axis])
-        residual[m : m + n] = self.singles[:, 3] - predicted
-        straight = np.zeros((n, STATES))
-        straight[rows, axis] = 1.0
-        jacobian[m : m + n, :6] = np.where(placed[:, None], by_own[rows, np.minimum(axis, 2)], straight)
-        by, by_bearer = self._by.place(x, width)
-        crumb, by_crumb = self._crumb.place(x, width)
-        residual[m + n :] = (by - crumb).ravel()
-        jacobian[m + n :, :6] = -by_bearer.reshape(-1, 6)
-        jacobian[m + n :, 6:12] = by_crumb.reshape(-1, 6)
-        return Linearised(jacobian, residual)
+        return Linearised(self.jacobian(x), self.residual(x))
 
-    def _linearise_pairs(self, x: Array, jacobian: Array, residual: Array) -> None:
-        width, size = self._layout.width, self._layout.length * self._layout.width
-        a, by_a = self._a.place(x, width)
-        b, by_b = self._b.place(x, width)
-        extra = np.where(self._extra >= 0, x[np.maximum(size + self._extra - width, 0)], 0.0)
-        kinds, constant = self.pairs[:, 1], self.pairs[:, 7]
-        for kind in (RANGE, RSSI, BEARING, BODY_BEARING):
-            mine = kinds == kind
-            if not mine.any():
-                continue
-            own = extra[mine]
-            got = self._predicted(kind, a[mine], b[mine], own, constant[mine], x, mine)
-            off = self.pairs[mine, 4] - got.predicted
-            residual[mine] = wrap(off) if kind >= BEARING else off
-            jacobian[mine, :6] = np.einsum("mi,mij->mj", got.by_a, by_a[mine])
-            jacobian[mine, 6:12] = np.einsum("mi,mij->mj", got.by_b, by_b[mine])
-            if kind < BEARING:
-                jacobian[mine, 12:] = got.by_extra
-            elif kind == BODY_BEARING:
-                rows = np.flatnonzero(mine)[self._a.unit[mine]]
-                jacobian[rows, 3] += got.by_extra[self._a.unit[mine], 0]
+    def residual(self, x: Array) -> Array:
+        """Residuals z − h(x) at an estimate x, flat."""
+        found = residuals(self._readings, x)
+        found[self._bearings] = wrap(found[self._bearings])
+        return found
 
-    def _predicted(
-        self, kind: int, a: Array, b: Array, extra: Array, constant: Array, x: Array, mine: Array
-    ) -> PairJacobian:
-        if kind == RANGE:
-            return predict_range(a, b, extra[:, 0], extra[:, 1])
-        if kind == RSSI:
-            return predict_rssi(a, b, extra[:, 0] + constant, extra[:, 1])
-        heading = constant.copy() if kind == BODY_BEARING else np.zeros(len(a))
-        if kind == BODY_BEARING:
-            unit = self._a.unit[mine]
-            heading[unit] += x[self._a.flat(self._layout.width)[mine][unit, 3]]
-        return predict_bearing(a, b, heading)
+    def jacobian(self, x: Array) -> Array:
+        """Derivatives at an estimate x, flat, m × 14."""
+        return jacobians(self._readings, x)
+
+    def bends(self, x: Array, information: Array, residual: Array, signed: bool) -> Bends:
+        """What the rows' second derivatives add to the curvature; see `linear.bends`."""
+        return bends(self._readings, x, information, residual, signed)

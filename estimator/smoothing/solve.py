@@ -1,29 +1,30 @@
-"""Gauss-Newton over a window: readings, motion and priors at once, robust, until it rests."""
+"""Newton steps over a window: readings, motion and priors at once, robust, until it rests."""
 
 from typing import NamedTuple
 
 import numpy as np
 
+from estimator.fusion.ledger import RSSI
 from estimator.fusion.prior import Key, Prior
 from estimator.graph.dense import Array, Indices
-from estimator.graph.kernels import scatter_rows
-from estimator.graph.robust import Weighted, weigh
+from estimator.graph.kernels import add_motion, scatter_rows
+from estimator.graph.robust import Weighted, mixture_cost, weigh
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.layout import Layout, Walk
 from estimator.smoothing.priors import own_priors
-from estimator.smoothing.rows import RSSI, Linearised, Rows
-from estimator.smoothing.walks import STATES, Motion, free_motions, unit_motion
+from estimator.smoothing.rows import Linearised, Rows
+from estimator.smoothing.walks import STATES, Free, Motion, free_motions, misfit, unit_motion
 
 ACCEPTED = 1e-3
 """Rise of the negative log likelihood that counts as rounding."""
 RESTING = 0.005
 SLACK_DB_PER_M = 4.0
 """What a metre makes of a signal's power a few metres away."""
-SHARES = (1.0, 0.4, 0.1)
+LEAST_SHARE, FARTHEST = 0.1, 4.0
+"""Shares of a step between which the cost is looked for at its lowest."""
+CLOSE = 0.3
+"""A step is good enough where the lowest cost is within this share of it."""
 LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e3
-FIRST_ESTIMATES = True
-WIDE = 1e-8
-"""Information of a block that nothing is known of beforehand: 10 km."""
 
 
 class Solved(NamedTuple):
@@ -46,6 +47,15 @@ class Solved(NamedTuple):
     cost: float
 
 
+class There(NamedTuple):
+    """An estimate that a step may lead to: its rows' residuals, the walks' motion there, and its cost."""
+
+    x: Array
+    residual: Array
+    motions: list[Motion]
+    cost: float
+
+
 class Problem:
     """The least-squares problem of a window.
 
@@ -59,6 +69,7 @@ class Problem:
         self.layout, self.rows, self.prior = layout, rows, prior
         known = () if prior is None else prior.keys
         self._at, self._mean, self._information = own_priors(layout, known)
+        self._ways = [self._way(i, walk) for i, walk in enumerate(layout.walks)]
         if prior is not None:
             self._prior_at = np.concatenate(
                 [self._columns(key) for key in prior.keys] or [np.zeros(0, dtype=np.intp)]
@@ -79,35 +90,32 @@ class Problem:
         start = layout.technologies.get(key)
         return np.full(2, -1) if start is None else size + np.arange(start, start + 2)
 
+    def _way(self, index: int, walk: Walk) -> tuple[Array, Array | Free]:
+        """Times between a walk's keyframes, and what lies between them wherever they are."""
+        times = self.layout.times[walk.first : walk.last + 1, index]
+        durations = np.diff(times)
+        if walk.way is None:
+            return durations, free_motions(walk.node.role, durations)
+        return durations, walk.way.between(times[:-1], times[1:])
+
     def motions(self, x: Array) -> list[Motion]:
         """Each walk's motion at an estimate."""
         layout = self.layout
         keyframes = x[: layout.length * layout.width].reshape(layout.length, layout.width)
         found = []
-        for i, walk in enumerate(layout.walks):
-            alive = slice(walk.first, walk.last + 1)
-            times = layout.times[alive, i]
-            states = keyframes[alive, STATES * i : STATES * (i + 1)]
-            durations = np.diff(times)
-            if walk.way is None:
-                found.append(free_motions(walk.node.role, durations, states))
+        for i, (walk, (durations, between)) in enumerate(zip(layout.walks, self._ways, strict=True)):
+            states = keyframes[walk.first : walk.last + 1, STATES * i : STATES * (i + 1)].copy()
+            if isinstance(between, Free):
+                found.append(between.motion(states))
             else:
-                found.append(unit_motion(walk.way.between(times[:-1], times[1:]), durations, states))
+                found.append(unit_motion(between, durations, states))
         return found
 
     def cost(self, x: Array, residual: Array, motions: list[Motion]) -> float:
         """Negative log likelihood up to a constant: mixtures of the readings, motion, priors."""
         rows = self.rows
-        outliers, shift, spread = rows.noise.T
-        good = rows.sigma**2
-        bad = good + spread**2
-        from_good = np.log1p(-outliers) - 0.5 * (np.log(good) + residual**2 / good)
-        from_bad = np.log(outliers) - 0.5 * (np.log(bad) + (residual - shift) ** 2 / bad)
-        total = -float(np.logaddexp(from_good, from_bad).sum())
-        for motion in motions:
-            if len(motion.noise):
-                solved = np.linalg.solve(motion.noise, motion.residual[:, :, None])[:, :, 0]
-                total += 0.5 * float((motion.residual * solved).sum())
+        total = float(mixture_cost(residual, rows.sigma, *rows.noise.T).sum())
+        total += sum(misfit(motion) for motion in motions)
         total += 0.5 * float((self._information * (x[self._at] - self._mean) ** 2).sum())
         if self.prior is not None:
             moved = self._prior_moved(x)
@@ -120,13 +128,15 @@ class Problem:
         What the prior was linearised at, it stays linearised at: where new derivatives by the same numbers
         were taken elsewhere, their sum would know what nobody has measured, as where north is.
         """
-        linear = self.rows.linearise(x)
-        if self.prior is None or not FIRST_ESTIMATES:
-            return linear
-        first = x.copy()
-        lasting = self._prior_at >= self.layout.length * self.layout.width
-        first[self._prior_at[lasting]] = self.prior.reference[lasting]
-        return Linearised(self.rows.linearise(first).jacobian, linear.residual)
+        return Linearised(self._jacobian(x), self.rows.residual(x))
+
+    def _jacobian(self, x: Array) -> Array:
+        first = x
+        if self.prior is not None:
+            first = x.copy()
+            lasting = self._prior_at >= self.layout.length * self.layout.width
+            first[self._prior_at[lasting]] = self.prior.reference[lasting]
+        return self.rows.jacobian(first)
 
     def _prior_moved(self, x: Array) -> Array:
         assert self.prior is not None  # noqa: S101 - asked for with a prior only
@@ -163,10 +173,22 @@ class Problem:
         layout, rows = self.layout, self.rows
         length = layout.length if until is None else until + 1
         width = layout.width
-        chain = Chain(length, width, layout.border)
+        chain = Chain(length, width, layout.border, len(layout.walks))
         size = layout.length * width
         for i, (walk, motion) in enumerate(zip(layout.walks, motions, strict=True)):
-            self._add_motion(chain, slice(STATES * i, STATES * (i + 1)), walk, motion)
+            own, count = slice(STATES * i, STATES * (i + 1)), min(walk.last, length - 1) - walk.first
+            chain.diagonal[: walk.first, own, own] = np.eye(STATES)
+            chain.diagonal[walk.last + 1 :, own, own] = np.eye(STATES)
+            add_motion(
+                i,
+                walk.first,
+                motion.transition[:count],
+                motion.information[:count],
+                motion.residual[:count],
+                chain.diagonal,
+                chain.link,
+                chain.wide,
+            )
         moving = self._at < size
         at, pull = self._at[moving], self._information * (self._mean - x[self._at])
         if width:
@@ -191,31 +213,51 @@ class Problem:
             information,
             weighted.residual,
             chain.diagonal,
-            chain.border,
+            chain.wide,
             chain.corner,
-            chain.gradient,
             chain.corner_gradient,
         )
         return chain
 
-    def _add_motion(self, chain: Chain, own: slice, walk: Walk, motion: Motion) -> None:
-        length = len(chain.diagonal)
-        chain.diagonal[: walk.first, own, own] = np.eye(STATES)
-        chain.diagonal[walk.last + 1 :, own, own] = np.eye(STATES)
-        count = min(walk.last, length - 1) - walk.first
-        if count <= 0:
-            return
-        information = np.linalg.inv(motion.noise[:count])
-        information = 0.5 * (information + information.transpose(0, 2, 1))
-        transition, residual = motion.transition[:count], motion.residual[:count]
-        pulled = np.matmul(transition.transpose(0, 2, 1), information)
-        before = slice(walk.first, walk.first + count)
-        after = slice(walk.first + 1, walk.first + count + 1)
-        chain.diagonal[before, own, own] += np.matmul(pulled, transition)
-        chain.diagonal[after, own, own] += information
-        chain.link[before, own, own] = -pulled.transpose(0, 2, 1)
-        chain.gradient[before, own] += np.einsum("kij,kj->ki", pulled, residual)
-        chain.gradient[after, own] -= np.einsum("kij,kj->ki", information, residual)
+    def _step(
+        self, x: Array, linear: Linearised, motions: list[Motion], slack_m: float, damping: float
+    ) -> tuple[Array, float]:
+        """A Newton step, flat, and the gain in log likelihood that it promises.
+
+        With all of the rows' curvature that may be had; only with what is positive where the whole is not, or
+        where the estimate is not near enough yet.
+        """
+        weighted = self.weigh(linear.residual, slack_m)
+        for signed in (False,) if slack_m > 0.0 else (True, False):
+            chain = self.assemble(x, linear, weighted, motions)
+            self._bend(chain, x, weighted, signed)
+            chain.damp(damping)
+            slope = np.concatenate([chain.gradient.ravel(), chain.corner_gradient])
+            try:
+                steps, fixed = chain.solve(mend=not signed)
+            except ValueError:
+                if not signed:
+                    raise
+                continue
+            break
+        step = np.concatenate([steps.ravel(), fixed])
+        return step, 0.5 * float(slope @ step)
+
+    def _bend(self, chain: Chain, x: Array, weighted: Weighted, signed: bool) -> None:
+        """Add the rows' own curvature to the normal equations: for the step, not for what is known."""
+        rows = self.rows
+        pair, jacobian, information = rows.bends(x, weighted.information, weighted.residual, signed)
+        scatter_rows(
+            rows.slab[pair],
+            rows.columns[pair],
+            jacobian,
+            information,
+            np.zeros(len(pair)),
+            chain.diagonal,
+            chain.wide,
+            chain.corner,
+            chain.corner_gradient,
+        )
 
     def _add_prior(self, chain: Chain, x: Array) -> None:
         assert self.prior is not None  # noqa: S101 - asked for with a prior only
@@ -235,14 +277,15 @@ class Problem:
     def solve(
         self, x: Array, slacks_m: tuple[float, ...] = (), iterations: int = 20, resting: float = RESTING
     ) -> Solved:
-        """Gauss-Newton with halved steps, until no position moves any more.
+        """Newton's method as far as its curvature is positive, until nothing is to be had any more.
 
         Args:
             x: where to start, flat.
             slacks_m: how far off the start may be, step by step, so that good readings are not taken for
                 outliers.
             iterations: at most so many steps.
-            resting: gain in log likelihood below which nothing is to be had any more.
+            resting: promised gain in log likelihood ε at which it ends: no number with standard deviation σ
+                is then farther than √(2 ε) σ from where its step leads.
         """
         linear, motions = self.linearise(x), self.motions(x)
         self.rows.widen(x, linear.jacobian)
@@ -250,26 +293,27 @@ class Problem:
         damping = 0.0
         for iteration in range(iterations):
             slack = slacks_m[iteration] if iteration < len(slacks_m) else 0.0
-            chain = self.assemble(x, linear, self.weigh(linear.residual, slack), motions)
-            chain.damp(damping)
-            steps, fixed = chain.solve()
-            step = np.concatenate([steps.ravel(), fixed])
-            for share in (1.0,) if slack > 0.0 else SHARES:
-                there = x + share * step
-                after, then = self.linearise(there), self.motions(there)
-                reached = self.cost(there, after.residual, then)
-                if slack > 0.0 or reached <= cost + ACCEPTED:
-                    break
-            if slack == 0.0 and reached > cost + ACCEPTED:
+            step, promised = self._step(x, linear, motions, slack, damping)
+            there = self._there(x + step)
+            if slack == 0.0 and promised > resting:
+                # The parabola through the cost here, its slope and the cost there: where it is lowest.
+                share = promised / max(2.0 * promised - (cost - there.cost), promised / FARTHEST)
+                if abs(share - 1.0) > CLOSE:
+                    there = min(there, self._there(x + max(share, LEAST_SHARE) * step), key=lambda p: p.cost)
+            if slack == 0.0 and there.cost > cost + ACCEPTED:
                 # The parabola reaches farther than it holds: shorter steps, and more along the slope.
                 damping = max(10.0 * damping, LEAST_DAMPING)
                 if damping > MOST_DAMPING:
                     break
                 continue
-            gained, cost = cost - reached, reached
-            x, linear, motions = there, after, then
-            if slack == 0.0 and gained < resting and share == 1.0 and damping <= LEAST_DAMPING:
+            x, motions, cost = there.x, there.motions, there.cost
+            linear = Linearised(self._jacobian(x), there.residual)
+            if slack == 0.0 and promised < resting and damping <= LEAST_DAMPING:
                 break
             damping = 0.1 * damping if damping > LEAST_DAMPING else 0.0
         weighted = self.weigh(linear.residual)
         return Solved(x, self.assemble(x, linear, weighted, motions), linear, weighted, motions, cost)
+
+    def _there(self, x: Array) -> There:
+        residual, motions = self.rows.residual(x), self.motions(x)
+        return There(x, residual, motions, self.cost(x, residual, motions))

@@ -3,14 +3,18 @@
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from estimator.fusion import physics
 from estimator.fusion.free import free_motion
 from estimator.graph.dense import Array
+from estimator.graph.kernels import half_inverse
 
 LONGEST_S = 600.0
 """Noise stops growing with the time between two reports there: nobody is followed over longer silences."""
 FLOOR = np.array([1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12])
+VARIANCES = np.array([6, 6, 7, 8, 9, 10])
+"""Which sums of a way are the variances of which states."""
 STATES = 6
 LONG_STEP_S = 4.0
 """Nobody's way over a longer time is a straight line."""
@@ -89,13 +93,91 @@ class Motion(NamedTuple):
         transition: F of each step, k × 6 × 6.
         noise: Q of each step, k × 6 × 6.
         residual: where the next keyframe is, less where the step leads, k × 6.
+        information: Q⁻¹ of each step, k × 6 × 6.
     """
 
     transition: Array
     noise: Array
     residual: Array
+    information: Array
 
 
+class Led(NamedTuple):
+    """Where a displacement leads to, less where from (m), and its derivatives by heading, bias and scale."""
+
+    east: float
+    north: float
+    up: float
+    by_heading_e: float
+    by_heading_n: float
+    by_bias_e: float
+    by_bias_n: float
+    by_scale_e: float
+    by_scale_n: float
+
+
+@njit(cache=True)
+def lead(psi: float, bias: float, scale: float, delta_m: Array, moment: Array) -> Led:
+    """What is s Rz(ψ) (Δ + β J M) of one displacement Δ (3) with its first moment M (3), and its slopes."""
+    cosine, sine = np.cos(psi), np.sin(psi)
+    bent_e, bent_n = delta_m[0] - bias * moment[1], delta_m[1] + bias * moment[0]
+    east, north = cosine * bent_e - sine * bent_n, sine * bent_e + cosine * bent_n
+    return Led(
+        scale * east,
+        scale * north,
+        scale * delta_m[2],
+        -scale * north,
+        scale * east,
+        -scale * (cosine * moment[1] + sine * moment[0]),
+        scale * (cosine * moment[0] - sine * moment[1]),
+        east,
+        north,
+    )
+
+
+@njit(cache=True)
+def led_by(before: Array, delta_m: Array, moment: Array, durations_s: Array) -> tuple[Array, Array]:
+    """Where displacements lead from states (m × 6), and the derivatives by these states, m × 6 × 6."""
+    count = len(before)
+    after, transition = before.copy(), np.zeros((count, STATES, STATES))
+    for i in range(count):
+        led = lead(before[i, 3], before[i, 4], 1.0 + before[i, 5], delta_m[i], moment[i])
+        after[i, 0] += led.east
+        after[i, 1] += led.north
+        after[i, 2] += led.up
+        after[i, 3] += before[i, 4] * durations_s[i]
+        for c in range(STATES):
+            transition[i, c, c] = 1.0
+        transition[i, 0, 3], transition[i, 1, 3] = led.by_heading_e, led.by_heading_n
+        transition[i, 0, 4], transition[i, 1, 4] = led.by_bias_e, led.by_bias_n
+        transition[i, 0, 5], transition[i, 1, 5], transition[i, 2, 5] = (
+            led.by_scale_e,
+            led.by_scale_n,
+            delta_m[i, 2],
+        )
+        transition[i, 3, 4] = durations_s[i]
+    return after, transition
+
+
+@njit(cache=True)
+def inverses(matrices: Array) -> Array:
+    """Inverses of symmetric positive definite matrices, m × n × n, exactly symmetric."""
+    count, n, _ = matrices.shape
+    found, half = np.empty((count, n, n)), np.empty((n, n))
+    for i in range(count):
+        half[:] = matrices[i]
+        if not half_inverse(half):
+            raise ValueError("a motion's noise is not positive definite")
+        for r in range(n):
+            for c in range(r + 1):
+                total = 0.0
+                for j in range(r, n):
+                    total += half[j, r] * half[j, c]
+                found[i, r, c] = found[i, c, r] = total
+    return found
+
+
+@njit(cache=True)
 def unit_motion(between: Array, durations_s: Array, states: Array) -> Motion:
     """A unit's motion (estimation.md, point 1), with what its heading's random walk does on the way.
 
@@ -108,51 +190,60 @@ def unit_motion(between: Array, durations_s: Array, states: Array) -> Motion:
         durations_s: of each step, k.
         states: position, ψ, β, s − 1 at k + 1 keyframes.
     """
-    before = states[:-1]
-    led, transition = led_by(before, between[:, :3], between[:, 3:6], durations_s)
     count = len(durations_s)
-    noise = np.zeros((count, STATES, STATES))
-    variances = np.maximum(between[:, [6, 6, 7, 8, 9, 10]], 0.0) + FLOOR
-    noise[:, range(STATES), range(STATES)] = variances
-    # The noise is the unit's own: it is scaled with what it reports. Were it not, a smaller scale would
-    # always fit better, for it makes every step's error smaller; so the derivative is by the way that was
-    # gone.
-    scale = 1.0 + before[:, 5]
-    noise[:, range(3), range(3)] *= (scale**2)[:, None]
-    transition[:, :3, 5] = (states[1:, :3] - before[:, :3]) / scale[:, None]
-    lever = transition[:, :2, 3]
-    turn = variances[:, 3]
-    noise[:, :2, :2] += lever[:, :, None] * lever[:, None, :] * (turn / 3.0)[:, None, None]
-    noise[:, :2, 3] += lever * (0.5 * turn)[:, None]
-    noise[:, 3, :2] += lever * (0.5 * turn)[:, None]
-    return Motion(transition, noise, states[1:] - led)
+    led, transition = led_by(states[:count], between[:, :3], between[:, 3:6], durations_s)
+    noise, residual = np.zeros((count, STATES, STATES)), np.empty((count, STATES))
+    for i in range(count):
+        scale = 1.0 + states[i, 5]
+        for c in range(STATES):
+            noise[i, c, c] = max(between[i, VARIANCES[c]], 0.0) + FLOOR[c]
+            residual[i, c] = states[i + 1, c] - led[i, c]
+        turn = noise[i, 3, 3]
+        # The noise is the unit's own: it is scaled with what it reports. Were it not, a smaller scale would
+        # always fit better, for it makes every step's error smaller; so the derivative is by the way that
+        # was gone.
+        for r in range(3):
+            noise[i, r, r] *= scale**2
+            transition[i, r, 5] = (states[i + 1, r] - states[i, r]) / scale
+        for r in range(2):
+            lever = transition[i, r, 3]
+            for c in range(2):
+                noise[i, r, c] += lever * transition[i, c, 3] * turn / 3.0
+            noise[i, r, 3] += lever * 0.5 * turn
+            noise[i, 3, r] += lever * 0.5 * turn
+    return Motion(transition, noise, residual, inverses(noise))
 
 
-def led_by(before: Array, delta_m: Array, moment: Array, durations_s: Array) -> tuple[Array, Array]:
-    """Where displacements lead from states (m × 6), and the derivatives by these states, m × 6 × 6."""
-    psi, bias, scale = before[:, 3], before[:, 4], 1.0 + before[:, 5]
-    cosine, sine = np.cos(psi), np.sin(psi)
-    bent_e = delta_m[:, 0] - bias * moment[:, 1]
-    bent_n = delta_m[:, 1] + bias * moment[:, 0]
-    east, north = cosine * bent_e - sine * bent_n, sine * bent_e + cosine * bent_n
-    by_bias_e = -cosine * moment[:, 1] - sine * moment[:, 0]
-    by_bias_n = -sine * moment[:, 1] + cosine * moment[:, 0]
-    after = before.copy()
-    after[:, 0] += scale * east
-    after[:, 1] += scale * north
-    after[:, 2] += scale * delta_m[:, 2]
-    after[:, 3] += bias * durations_s
-    transition = np.broadcast_to(np.eye(STATES), (len(before), STATES, STATES)).copy()
-    transition[:, 0, 3], transition[:, 1, 3] = -scale * north, scale * east
-    transition[:, 0, 4], transition[:, 1, 4] = scale * by_bias_e, scale * by_bias_n
-    transition[:, 0, 5], transition[:, 1, 5], transition[:, 2, 5] = east, north, delta_m[:, 2]
-    transition[:, 3, 4] = durations_s
-    return after, transition
+class Free(NamedTuple):
+    """What is the same of a free motion wherever it is: F, Q and Q⁻¹ of each step, k × 6 × 6."""
+
+    transition: Array
+    noise: Array
+    information: Array
+
+    def motion(self, states: Array) -> Motion:
+        """The motion with states of k + 1 keyframes."""
+        residual = states[1:] - np.einsum("kij,kj->ki", self.transition, states[:-1])
+        return Motion(self.transition, self.noise, residual, self.information)
 
 
-def free_motions(role: str, durations_s: Array, states: Array) -> Motion:
+def free_motions(role: str, durations_s: Array) -> Free:
     """The motion of a node without PDR: a velocity that is forgotten with time, k steps."""
     known = {d: free_motion(role, d) for d in set(durations_s.tolist())}
     transition = np.array([known[d][0] for d in durations_s.tolist()]).reshape(-1, STATES, STATES)
     noise = np.array([known[d][1] for d in durations_s.tolist()]).reshape(-1, STATES, STATES)
-    return Motion(transition, noise, states[1:] - np.einsum("kij,kj->ki", transition, states[:-1]))
+    return Free(transition, noise, inverses(noise))
+
+
+@njit(cache=True)
+def misfit(motion: Motion) -> float:
+    """½ Σ rᵀ Q⁻¹ r of a node's motion."""
+    total = 0.0
+    count, size = motion.residual.shape
+    for i in range(count):
+        for r in range(size):
+            pulled = 0.0
+            for c in range(size):
+                pulled += motion.information[i, r, c] * motion.residual[i, c]
+            total += motion.residual[i, r] * pulled
+    return 0.5 * total

@@ -87,7 +87,7 @@ def refresh(state: FusionState) -> bool:
         return False
     try:
         layout = Layout(state, since, spacing_s(state), state.prior)
-        rows = Rows(layout, since, np.inf)
+        rows = Rows(layout, since)
         rows.learn(state.noise)
         problem = Problem(layout, rows, state.prior)
         solved = _best(problem, layout.start())

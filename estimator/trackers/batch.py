@@ -95,7 +95,7 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     x = None
     for most in (*LEARNING, None):
         layout = Layout(state, since_t, spacing)
-        rows = Rows(layout, -math.inf, math.inf)
+        rows = Rows(layout, -math.inf)
         rows.learn(state.noise)
         problem = Problem(layout, rows, None)
         if x is None:

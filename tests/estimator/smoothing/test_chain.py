@@ -17,7 +17,7 @@ def random_chain(length: int, width: int, border: int, seed: int) -> tuple[Chain
         rows = chance.normal(0.0, 1.0, (2 * len(used), len(used)))
         whole[np.ix_(used, used)] += rows.T @ rows
     gradient = chance.normal(0.0, 1.0, size)
-    chain = Chain(length, width, border)
+    chain = Chain(length, width, border, 1)
     for j in range(length):
         own = slice(j * width, (j + 1) * width)
         chain.diagonal[j] = whole[own, own]

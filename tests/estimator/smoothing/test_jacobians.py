@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.fusion import physics
-from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE, RSSI
+from estimator.fusion.ledger import BODY_BEARING, RANGE, RSSI
 from estimator.graph.dense import Array
 from estimator.measurements import bearing
-from estimator.smoothing.ends import Ends
+from estimator.smoothing.ends import Ends, place_ends
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.walks import STATES, Motion, Way, free_motions, led_by, unit_motion
@@ -75,7 +75,7 @@ def test_the_residuals_of_motions_change_with_both_their_ends(seed: int) -> None
     states = unit_states(chance, 5)
     kinds: list[Callable[[Array], Motion]] = [
         lambda x: unit_motion(between, durations, x),
-        lambda x: free_motions("responder", durations, x),
+        lambda x: free_motions("responder", durations).motion(x),
     ]
     for motion_of in kinds:
         for k in range(4):  # to where the motion leads: elsewhere the scale of a unit's noise has a part in F
@@ -134,8 +134,8 @@ def test_a_heading_that_walks_randomly_moves_the_end_of_a_straight_way_as_told()
 
 
 def test_the_motion_of_a_node_without_pdr_is_the_same_in_one_step_and_in_two() -> None:
-    one = free_motions("responder", np.array([5.0]), np.zeros((2, STATES)))
-    two = free_motions("responder", np.array([2.0, 3.0]), np.zeros((3, STATES)))
+    one = free_motions("responder", np.array([5.0]))
+    two = free_motions("responder", np.array([2.0, 3.0]))
     assert two.transition[1] @ two.transition[0] == pytest.approx(one.transition[0])
     carried = two.transition[1] @ two.noise[0] @ two.transition[1].T + two.noise[1]
     assert carried == pytest.approx(one.noise[0], abs=1e-5)
@@ -144,13 +144,16 @@ def test_the_motion_of_a_node_without_pdr_is_the_same_in_one_step_and_in_two() -
 @pytest.fixture(scope="module")
 def incident() -> Problem:
     """A unit, a node without one, an anchor, a beacon, breadcrumbs; ranges, RSSI, bearings, fixes, drops."""
-    problem = problem_of(fused(two_responders(40)))
+    state = fused(two_responders(40))
     # Its bearings are absolute: some are told from the body instead, so that ψ has a part in them.
-    bearings = np.flatnonzero(problem.rows.pairs[:, 1] > RSSI)
-    problem.rows.pairs[bearings[::2], 1] = BODY_BEARING
+    pairs = state.ledger.table("pairs").copy()
+    pairs[np.flatnonzero(pairs[:, 1] > RSSI)[::2], 1] = BODY_BEARING
+    state.ledger.replace("pairs", pairs)
     # And some single readings tell a height, a gyro bias and a scale.
-    problem.rows.singles[:3, 2] = [4.0, 5.0, 2.0]
-    return problem
+    singles = state.ledger.table("singles").copy()
+    singles[:3, 2] = [4.0, 5.0, 2.0]
+    state.ledger.replace("singles", singles)
+    return problem_of(state)
 
 
 def random_state(problem: Problem, seed: int) -> Array:
@@ -167,17 +170,24 @@ def random_state(problem: Problem, seed: int) -> Array:
 
 def spread(rows: Rows, jacobian: Array, problem: Problem) -> Array:
     """Jacobians by the columns of each row as one by the flat unknowns."""
+    found = np.zeros((len(rows.slab), problem.layout.length * problem.layout.width + problem.layout.border))
+    for row in range(len(found)):
+        found[row] = spread_row(rows, row, jacobian[row], problem)
+    return found
+
+
+def spread_row(rows: Rows, row: int, slopes: Array, problem: Problem) -> Array:
+    """Derivatives by the columns of one row as those by the flat unknowns."""
     layout = problem.layout
     size = layout.length * layout.width
-    found = np.zeros((len(rows.slab), size + layout.border))
-    for row, (slab, columns) in enumerate(zip(rows.slab, rows.columns, strict=True)):
-        for column, value in zip(columns, jacobian[row], strict=True):
-            if column >= layout.width:
-                found[row, size + column - layout.width] += value
-            elif column >= 0:
-                found[row, slab * layout.width + column] += value
-            else:
-                assert value == 0.0
+    found = np.zeros(size + layout.border)
+    for column, value in zip(rows.columns[row].tolist(), slopes.tolist(), strict=True):
+        if column >= layout.width:
+            found[size + column - layout.width] += value
+        elif column >= 0:
+            found[rows.slab[row] * layout.width + column] += value
+        else:
+            assert value == 0.0
     return found
 
 
@@ -193,17 +203,42 @@ def turns_of(problem: Problem) -> Array:
 def test_the_rows_of_a_window_change_with_its_unknowns_as_told(incident: Problem, seed: int) -> None:
     x = random_state(incident, seed)
     rows = incident.rows
-    told = spread(rows, rows.linearise(x).jacobian, incident)
+    told = spread(rows, rows.jacobian(x), incident)
     assert set(rows.pairs[:, 1].astype(int).tolist()) >= {RANGE, RSSI, BODY_BEARING}
-    expected = difference(lambda at: -rows.linearise(at).residual, x)
-    # Derivatives of bearings are damped at short distances on purpose.
+    expected = difference(lambda at: -rows.residual(at), x)
+    # At short distances a bearing's Jacobian is damped on purpose, but for that by its heading.
     a, b = rows.places(x)
-    squared = ((a - b)[:, :2] ** 2).sum(axis=1)
-    damped = squared / (squared + bearing.NEAR_M**2)
-    by_place = np.isin(np.arange(told.shape[1]), turns_of(incident), invert=True)
-    bearings = np.flatnonzero(rows.pairs[:, 1] >= BEARING)
-    expected[np.ix_(bearings, by_place)] *= damped[bearings, None]
+    bearings = np.flatnonzero(rows.pairs[:, 1] > RSSI)
+    squared = ((a - b)[bearings, :2] ** 2).sum(axis=1)
+    damped = (squared / (squared + bearing.NEAR_M**2))[:, None]
+    units = {walk.number for walk in incident.layout.walks if walk.way is not None}
+    for row, share in zip(bearings.tolist(), damped, strict=True):
+        counted = rows.pairs[row, 1] == BODY_BEARING and int(rows.pairs[row, 2]) in units
+        own = rows.slab[row] * incident.layout.width + rows.columns[row, 3]
+        by_heading = np.zeros(len(x))
+        by_heading[own] = -1.0 if counted else 0.0
+        expected[row] = by_heading + share * (expected[row] - by_heading)
     assert np.abs(told - expected).max() < 1e-5 * (1.0 + np.abs(expected).max())
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_distances_bend_as_their_jacobians_change(incident: Problem, seed: int) -> None:
+    """−Σ P⁻¹ r ∂²h/∂x² by places: how −Hᵀ P⁻¹ r changes with them while P⁻¹ r stays."""
+    chance = np.random.default_rng(seed)
+    rows, layout = incident.rows, incident.layout
+    x, m, size = random_state(incident, seed), len(rows.pairs), layout.length * layout.width
+    # Ranges that are too long and powers that are too great bend upwards everywhere across.
+    weight = np.zeros(len(rows.slab))
+    kinds = rows.pairs[:, 1]
+    weight[:m] = np.abs(chance.normal(0.0, 1.0, m)) * np.select([kinds == RANGE, kinds == RSSI], [-1.0, 1.0])
+    pair, jacobian, information = rows.bends(x, np.ones(m), weight, True)
+    each = np.array([spread_row(rows, r, j, incident) for r, j in zip(pair, jacobian, strict=True)])
+    told = (each.T * information) @ each
+    walked = np.arange(size).reshape(layout.length, -1, STATES)[:, :, :3].ravel()
+    places = [*walked.tolist(), *(size + s + c for s in layout.stands.values() for c in range(3))]
+    expected = -difference(lambda at: spread(rows, rows.jacobian(at), incident).T @ weight, x)
+    at = np.ix_(places, places)
+    assert np.abs(told[at] - expected[at]).max() < 1e-4 * np.abs(expected[at]).max()
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -213,15 +248,16 @@ def test_the_places_of_ends_change_with_their_columns_as_told(incident: Problem,
     x = random_state(incident, seed)
     numbers = chance.integers(0, len(layout.state.owners), 60)
     ends = Ends(layout, numbers, chance.uniform(0.0, 41.0, 60), chance.choice([False, True], 60))
-    _, derivative = ends.place(x, layout.width)
-    expected = difference(lambda at: ends.place(at, layout.width)[0].ravel(), x).reshape(60, 3, -1)
-    flat, told = ends.flat(layout.width), np.zeros_like(expected)
+    turned = place_ends(ends.table, x).turned
+    expected = difference(lambda at: place_ends(ends.table, at).place.ravel(), x).reshape(60, 3, -1)
+    told = np.zeros_like(expected)
     for end in range(60):
+        derivative = np.hstack([np.eye(3), turned[end]])
         for column in range(STATES):
             if ends.columns[end, column] >= 0:
-                told[end, :, flat[end, column]] += derivative[end, :, column]
+                told[end, :, ends.table.at[end, column]] += derivative[:, column]
             else:
-                assert not derivative[end, :, column].any()
+                assert column < 3 or not derivative[:, column].any()
     assert np.abs(told - expected).max() < 1e-5
 
 
@@ -239,7 +275,7 @@ def test_a_moving_end_is_where_it_is_led_to_from_either_keyframe(incident: Probl
         keyframes[k + 1, walk] = led_by(keyframes[k : k + 1, walk], part[:, :3], part[:, 3:6], duration)[0][0]
     t = np.linspace(0.0, 40.0, 301)
     ends = Ends(layout, np.full(len(t), layout.walks[walk].number), t, np.zeros(len(t), dtype=bool))
-    places, _ = ends.place(x, layout.width)
+    places = place_ends(ends.table, x).place
     sums = way.between(np.zeros(len(t)), t)
     assert np.abs(places - sums[:, :3]).max() < 1e-9
     assert np.abs(np.diff(places, axis=0)).max() < physics.FASTEST_MPS

@@ -25,7 +25,7 @@ SHAPES = [(2, 3, 2), (6, 4, 3), (60, 6, 5), (5, 3, 0)]
 def random_chain(length: int, width: int, border: int, seed: int) -> Chain:
     """A chain with well-conditioned random contents."""
     chance = np.random.default_rng(seed)
-    chain = Chain(length, width, border)
+    chain = Chain(length, width, border, 1)
     for j in range(length):
         count = width * (2 if j + 1 < length else 1) + border
         rows = chance.normal(0.0, 1.0, (3 * count, count)) / np.sqrt(count)
@@ -57,7 +57,7 @@ def test_solving_what_a_remainder_leaves_equals_solving_whole(shape: tuple[int, 
     for keyframe in sorted({0, 1, length // 2, length - 1}):
         chain = random_chain(*shape, seed=length)
         left = chain.remainder(keyframe)
-        rest = Chain(length - keyframe, width, border)
+        rest = Chain(length - keyframe, width, border, 1)
         rest.diagonal[:], rest.link[:] = chain.diagonal[keyframe:], chain.link[keyframe:]
         rest.border[:], rest.gradient[:] = chain.border[keyframe:], chain.gradient[keyframe:]
         rest.diagonal[0], rest.border[0] = left.matrix[:width, :width], left.matrix[:width, width:]

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from estimator.fusion.prior import Prior
 from estimator.fusion.state import FusionState
@@ -28,7 +29,7 @@ def problem_of(state: FusionState, since_t: float | None = None, prior: Prior | 
     begins = state.ledger.table("begins")
     first = float(begins[:, 0].min()) if since_t is None else since_t
     layout = Layout(state, first, spacing_s(state), prior)
-    rows = Rows(layout, -math.inf if since_t is None else since_t, math.inf)
+    rows = Rows(layout, -math.inf if since_t is None else since_t)
     rows.learn(state.noise)
     return Problem(layout, rows, prior)
 
@@ -65,7 +66,7 @@ def dense(chain: Chain) -> tuple[Array, Array]:
         whole[size:, own] = chain.border[j].T
         if j + 1 < length:
             after = slice((j + 1) * width, (j + 2) * width)
-            whole[after, own] = chain.link[j]
-            whole[own, after] = chain.link[j].T
+            link = block_diag(*chain.link[j])
+            whole[after, own], whole[own, after] = link, link.T
     whole[size:, size:] = chain.corner
     return whole, np.concatenate([chain.gradient.ravel(), chain.corner_gradient])
