@@ -239,9 +239,8 @@ def _standing(
 
 
 def _advance_units(state: FusionState, steps: Sequence[Step]) -> None:
-    starts = state.graph.starts
-    rows = np.array([(starts[s.node.position], starts[s.node.unit]) for s in steps]).repeat(3, axis=1)
-    rows += AXES % 3
+    starts = [(state.graph.starts[s.node.position], state.graph.starts[s.node.unit]) for s in steps]
+    rows = np.array([(p, p + 1, p + 2, u, u + 1, u + 2) for p, u in starts])
     delta, duration = np.array([s.delta_m for s in steps]), np.array([s.duration_s for s in steps])
     moved = move(state.graph.reference[rows], delta, duration)
     noise = np.zeros((len(steps), 6, 6))

@@ -1,5 +1,6 @@
 """Everything that the fusion remembers between two ticks."""
 
+from copy import copy
 from typing import Literal, Self
 
 import numpy as np
@@ -73,16 +74,12 @@ class FusionState:
 
     def copy(self) -> Self:
         """An independent copy, without this tick's notices."""
-        twin = type(self)(self.origin_wgs84)
-        twin.graph = self.graph.copy()
-        twin.nodes, twin.sightings = dict(self.nodes), dict(self.sightings)
-        twin.waiting, twin.noise, twin.reference_pa = self.waiting, dict(self.noise), self.reference_pa
+        twin = copy(self)
+        twin.graph, twin.ledger = self.graph.copy(), self.ledger.copy()
+        twin.nodes, twin.links, twin.sightings = dict(self.nodes), dict(self.links), dict(self.sightings)
+        twin.noise, twin.uncalibrated = dict(self.noise), dict(self.uncalibrated)
         twin.counts, twin.said, twin.tried = dict(self.counts), dict(self.said), dict(self.tried)
-        twin.links = dict(self.links)
-        twin.newest_t, twin.due, twin.begun_t = self.newest_t, self.due, self.begun_t
-        twin.refreshed_t, twin.window_t, twin.prior = self.refreshed_t, self.window_t, self.prior
-        twin.uncalibrated, twin.bent_m = dict(self.uncalibrated), self.bent_m
-        twin.ledger, twin.owners, twin.sources = self.ledger.copy(), self.owners, self.sources
+        twin.notices = []
         return twin
 
     def count(self, what: Count, number: int = 1) -> None:

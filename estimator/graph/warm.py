@@ -3,6 +3,7 @@
 import numpy as np
 
 from estimator.fusion.descent import descend
+from estimator.fusion.free import free_motion
 from estimator.fusion.rows import FIELDS
 from estimator.fusion.update import tally
 from estimator.graph.kernels import (
@@ -74,6 +75,7 @@ def _warm_filter() -> None:
     graph.advance(rows, graph.reference[rows], straight, straight)
     graph.add_measurements(rows, np.ones((1, 3)), np.ones(1), np.zeros(1))
     move(np.zeros((1, 6)), np.zeros((1, 3)), np.ones(1))
+    free_motion("responder", 1.0)
     table = np.full((1, FIELDS), 0.5)
     table[0, :2] = 0.0
     found = descend(table, graph.information.copy(), graph.vector, graph.reference, 1)

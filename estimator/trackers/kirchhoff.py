@@ -50,8 +50,10 @@ class KirchhoffTracker:
     def _picture(self) -> tuple[FusionState, Array]:
         """The state to be shown and its covariance; what waits for a displacement is held against it here."""
         if self._shown is None:
-            state = self._lag.state().copy()
-            flush(state)
+            state = self._lag.state()
+            if state.waiting:
+                state = state.copy()
+                flush(state)
             self._shown = state, state.graph.covariance()
         return self._shown
 

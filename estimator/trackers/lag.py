@@ -151,9 +151,10 @@ class Lag:
         buckets: set[tuple[float, int]] = set()
         thinned = []
         for tick, state in self._checkpoints[:-2]:
-            age = end_of(newest) - end_of(tick)
-            spacing = next(s for limit, s in SPACING_S if age <= limit)
-            bucket = (spacing, tick if spacing == 0.0 else int(end_of(tick) // spacing))
+            end = end_of(tick)
+            age = end_of(newest) - end
+            _, spacing = SPACING_S[bisect_left(SPACING_S, (age, 0.0))]
+            bucket = (spacing, tick if spacing == 0.0 else int(end // spacing))
             # The oldest of each bucket stays, so that what has grown old enough to be thinned is not lost
             # again.
             if bucket not in buckets:

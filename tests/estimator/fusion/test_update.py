@@ -1,0 +1,30 @@
+"""What a tick's readings tell of the noise."""
+
+import numpy as np
+import pytest
+
+from estimator.fusion.rows import FIELDS, LINK, NOMINAL, SIGMA, SOURCE
+from estimator.fusion.update import tally
+
+
+def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_link() -> None:
+    """Two on one link whose ends stand still, one on a link without an error, one of no technology."""
+    table = np.zeros((4, FIELDS))
+    table[:, SOURCE], table[:, LINK] = [1, 1, 0, -1], [0, 0, 1, -1]
+    table[:, NOMINAL], table[:, SIGMA] = 0.5, 0.4
+    residual, predicted, good = (
+        np.array([0.3, -0.2, 1.0, 9.0]),
+        np.full(4, 0.04),
+        np.array([0.9, 0.8, 0.2, 1.0]),
+    )
+    errors, sums = np.array([1.5, np.nan]), np.zeros((3, 5))
+    tally(table, residual, predicted, good, np.array([True, True]), errors, sums)
+    unsure = 0.04 * 0.16 / 0.2
+    first, second = 0.3 / 0.5, -0.2 / 0.5
+    squares = 0.9 * (0.3**2 + unsure) / 0.25 + 0.8 * (0.2**2 + unsure) / 0.25
+    products = 0.9 * (first * 1.5 - unsure / 0.25) + 0.8 * (second * first - unsure / 0.25)
+    assert sums[1] == pytest.approx([1.7, squares, 1.7, products, 2.0])
+    assert sums[0] == pytest.approx([0.2, 0.2 * (1.0 + unsure) / 0.25, 0.0, 0.0, 1.0])
+    assert (sums[2] == 0.0).all()
+    assert errors[0] == pytest.approx(second)
+    assert np.isnan(errors[1])
