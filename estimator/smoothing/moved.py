@@ -15,6 +15,8 @@ from estimator.fusion.nodes import NodeState
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.graph.robust import cauchy_cost
+from estimator.measurements.range import predict_range
+from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.solve import Problem, Solved
 
 RECENT_S = 120.0
@@ -63,63 +65,98 @@ def moved_nodes(problem: Problem, solved: Solved) -> list[Moved]:
     m = len(rows.pairs)
     kinds = rows.pairs[:, 1]
     now = float(problem.layout.grid[-1])
-    residual = solved.linear.residual[:m]
-    cost = cauchy_cost(residual / rows.sigma[:m], CAUCHY)
+    cost = cauchy_cost(solved.linear.residual[:m] / rows.sigma[:m], CAUCHY)
     recent = (rows.pairs[:, 0] > now - RECENT_S) & (kinds <= RSSI)
     found = []
     for node in state.nodes.values():
         if node.mode != "static" or node.role == "anchor":
             continue
         mine = np.flatnonzero(recent & ((rows.pairs[:, 2] == node.index) | (rows.pairs[:, 3] == node.index)))
-        if len(mine) < READINGS_MIN:
-            continue
         mine = mine[np.argsort(rows.pairs[mine, 0], kind="stable")]
-        from_here = np.cumsum((cost[mine] - USUAL_COST)[::-1])[::-1]
-        first = int(np.argmax(from_here[: len(mine) - READINGS_MIN + 1]))
-        if from_here[first] < SUSPICION:
+        first = _disagreeing(cost[mine])
+        if first is None:
             continue
-        if _elsewhere(problem, solved, node, mine[first:]):
-            found.append(Moved(node.node, float(rows.pairs[mine[first], 0]), len(mine) - first))
+        seen = _seen(problem, solved, node, mine[first:])
+        place = None if seen is None else _elsewhere(seen)
+        if seen is None or place is None:
+            continue
+        # What drew the node off its place may be the newest readings, and what disagrees all the others.
+        newest = _disagreeing(cauchy_cost(seen.residual_at(place) / seen.sought.sigma, CAUCHY))
+        since_t = float(seen.t[0 if newest is None else newest])
+        found.append(Moved(node.node, since_t, int((rows.pairs[mine, 0] >= since_t).sum())))
     return found
 
 
-def _elsewhere(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> bool:
-    """Whether some place explains the readings `mine` of a node clearly better than the one it has."""
+def _disagreeing(cost: Array) -> int | None:
+    """From where on readings, in order of epoch, disagree with a place by their costs; None: they do not."""
+    if len(cost) < READINGS_MIN:
+        return None
+    from_here = np.cumsum((cost - USUAL_COST)[::-1])[::-1]
+    first = int(np.argmax(from_here[: len(cost) - READINGS_MIN + 1]))
+    return None if from_here[first] < SUSPICION else first
+
+
+class _Seen(NamedTuple):
+    """Readings to one node by one technology.
+
+    Attributes:
+        t: epochs, m (s).
+        sought: what they say.
+        place_m: where the node is thought to be, 3 (m).
+        residual: of the readings there, m.
+    """
+
+    t: Array
+    sought: Sought
+    place_m: Array
+    residual: Array
+
+    def residual_at(self, place_m: Array) -> Array:
+        """Residuals of the readings if the node were at a place (3, m), m."""
+        sought, ones = self.sought, np.ones(len(self.t))
+        predict = predict_range if sought.kind == "range" else predict_rssi
+        there = np.tile(place_m, (len(self.t), 1))
+        return sought.value - predict(sought.points, there, *(ones * e for e in sought.extra)).predicted
+
+
+def _seen(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> _Seen | None:
+    """The readings `mine` to a node, by the technology that has most of them, ranges first."""
     rows, layout = problem.rows, problem.layout
     ranged = rows.pairs[mine, 1] == RANGE
     kind: Literal["range", "rssi"] = "range" if ranged.sum() >= READINGS_MIN else "rssi"
     mine = mine[ranged if kind == "range" else ~ranged]
     sources, counts = np.unique(rows.source[mine], return_counts=True)
     if not len(sources):
-        return False
+        return None
     mine = mine[rows.source[mine] == sources[np.argmax(counts)]]
     if len(mine) < READINGS_MIN:
-        return False
+        return None
     a, b = rows.places(solved.x)
     here = rows.pairs[mine, 2] == node.index
-    points = np.where(here[:, None], b[mine], a[mine])
     place = np.where(here[:, None], a[mine], b[mine])[0]
-    key = ("range" if kind == "range" else "rssi", int(rows.source[mine[0]]))
-    start = layout.length * layout.width + layout.technologies[key]
-    sigma = np.hypot(rows.sigma[mine], UNSURE_M) if kind == "range" else rows.sigma[mine]
+    start = layout.length * layout.width + layout.technologies[(kind, int(rows.source[mine[0]]))]
     sought = Sought(
         kind=kind,
-        points=points,
+        points=np.where(here[:, None], b[mine], a[mine]),
         value=rows.pairs[mine, 4] - rows.pairs[mine, 7],
-        sigma=sigma,
+        sigma=np.hypot(rows.sigma[mine], UNSURE_M) if kind == "range" else rows.sigma[mine],
         up_m=float(place[2]),
         up_sigma_m=UP_SIGMA_M,
         extra=solved.x[start : start + 2],
         extra_covariance=np.diag([1e-6, 1e-6]),
     )
-    modes = find_modes(sought)
+    return _Seen(rows.pairs[mine, 0], sought, place, solved.linear.residual[mine])
+
+
+def _elsewhere(seen: _Seen) -> Array | None:
+    """A place that explains readings clearly better than the one that their node has, 3 (m)."""
+    modes = find_modes(seen.sought)
     if not modes:
-        return False
+        return None
     best = modes[0]
-    off = solved.linear.residual[mine] / sigma
-    before = float(cauchy_cost(off, CAUCHY).sum())
-    far = float(np.hypot(*(best.position_m - place)[:2])) > max(FAR_M, 2.0 * best.sigma_m)
-    return far and before - best.cost > GAIN and best.cost < len(mine)
+    before = float(cauchy_cost(seen.residual / seen.sought.sigma, CAUCHY).sum())
+    far = float(np.hypot(*(best.position_m - seen.place_m)[:2])) > max(FAR_M, 2.0 * best.sigma_m)
+    return best.position_m if far and before - best.cost > GAIN and best.cost < len(seen.t) else None
 
 
 def changed_links(problem: Problem) -> list[Changed]:
