@@ -141,24 +141,14 @@ def half_inverse(matrix: Array) -> bool:
 
 
 @njit(cache=True)
-def times_link(matrix: Array, blocks: Array, product: Array) -> None:
-    """A Eᵀ, n × n, for a matrix A and a link E of blocks along its diagonal (blocks × b × b)."""
+def turn_link(blocks: Array, turned: Array) -> None:
+    """Eᵀ, n × n, of a link E given as blocks along its diagonal (blocks × b × b); elsewhere 0 as before."""
     count, size, _ = blocks.shape
-    turned = np.empty((size, size))
     for block in range(count):
         at = block * size
-        for c in range(size):
-            for i in range(size):
-                turned[i, c] = blocks[block, c, i]
-        for r in range(len(matrix)):
-            row = product[r]
+        for r in range(size):
             for c in range(size):
-                row[at + c] = 0.0
-            for i in range(size):
-                share = matrix[r, at + i]
-                if share != 0.0:
-                    for c in range(size):
-                        row[at + c] += share * turned[i, c]
+                turned[at + r, at + c] = blocks[block, c, r]
 
 
 @njit(cache=True)
@@ -181,6 +171,7 @@ def eliminate(first: int, last: int, diagonal: Array, link: Array, wide: Array) 
     length, width, across = wide.shape
     inverse, half = np.empty((width, width)), np.empty((width, width))
     done, lost, taken = np.empty((width, across)), np.empty((width, width)), np.empty((width, across))
+    turned = np.zeros((width, width))
     for j in range(first, last):
         inverse[:] = diagonal[j]
         if not half_inverse(inverse):
@@ -189,7 +180,8 @@ def eliminate(first: int, last: int, diagonal: Array, link: Array, wide: Array) 
         np.dot(inverse, wide[j], done)
         wide[j] = done
         if j < length - 1:
-            times_link(inverse, link[j], half)
+            turn_link(link[j], turned)
+            np.dot(inverse, turned, half)
             np.dot(half.T, half, lost)
             np.dot(half.T, done, taken)
             diagonal[j + 1] -= lost
@@ -223,7 +215,7 @@ def selected_inverse(
     """After `eliminate`: covariance of each keyframe (`found`, k × n × n) and with the next (`ahead`)."""
     length, width, across = wide.shape
     next_border = np.zeros((width, across - 1))
-    to_next = np.empty((width, width))
+    to_next, turned = np.empty((width, width)), np.zeros((width, width))
     for j in range(length - 1, -1, -1):
         back = diagonal[j].T
         border = wide[j, :, : across - 1].copy()
@@ -231,7 +223,8 @@ def selected_inverse(
         with_border = np.dot(to_border, border_covariance)
         covariance = np.dot(back, diagonal[j])
         if j < length - 1:
-            times_link(-covariance, link[j], to_next)
+            turn_link(link[j], turned)
+            np.dot(-covariance, turned, to_next)
             with_next = np.dot(to_next, found[j + 1]) + np.dot(to_border, next_border.T)
             with_border += np.dot(to_next, next_border)
             covariance += np.dot(with_next, to_next.T)

@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.fusion.ledger import RSSI
-from estimator.fusion.prior import Key, Prior
-from estimator.graph.dense import Array, Indices
+from estimator.fusion.prior import Prior
+from estimator.graph.dense import Array
 from estimator.graph.kernels import add_motion, scatter_rows
 from estimator.graph.robust import Weighted, mixture_cost, weigh
+from estimator.smoothing.carried import Carried
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.layout import Layout, Walk
 from estimator.smoothing.priors import own_priors
@@ -20,6 +21,8 @@ ACCEPTED = 1e-3
 RESTING = 0.005
 SLACK_DB_PER_M = 4.0
 """What a metre makes of a signal's power a few metres away."""
+NEAR = 1.0
+"""A step that gains less in log likelihood was near enough for negative curvature to mean something."""
 LEAST_SHARE, FARTHEST = 0.1, 4.0
 """Shares of a step between which the cost is looked for at its lowest."""
 CLOSE = 0.3
@@ -70,25 +73,7 @@ class Problem:
         known = () if prior is None else prior.keys
         self._at, self._mean, self._information = own_priors(layout, known)
         self._ways = [self._way(i, walk) for i, walk in enumerate(layout.walks)]
-        if prior is not None:
-            self._prior_at = np.concatenate(
-                [self._columns(key) for key in prior.keys] or [np.zeros(0, dtype=np.intp)]
-            ).astype(np.intp)
-            kept = self._prior_at >= 0
-            self._prior_kept = np.flatnonzero(kept)
-
-    def _columns(self, key: Key) -> Indices:
-        """Flat columns of a prior's block; −1 where it is no longer there."""
-        layout, (kind, number) = self.layout, key
-        size = layout.length * layout.width
-        if kind == "walk":
-            start = layout.column_of.get(number)
-            return np.full(STATES, -1) if start is None else np.arange(start, start + STATES)
-        if kind == "stand":
-            start = layout.stands.get(number)
-            return np.full(3, -1) if start is None else size + np.arange(start, start + 3)
-        start = layout.technologies.get(key)
-        return np.full(2, -1) if start is None else size + np.arange(start, start + 2)
+        self._carried = None if prior is None else Carried(layout, prior)
 
     def _way(self, index: int, walk: Walk) -> tuple[Array, Array | Free]:
         """Times between a walk's keyframes, and what lies between them wherever they are."""
@@ -117,9 +102,8 @@ class Problem:
         total = float(mixture_cost(residual, rows.sigma, *rows.noise.T).sum())
         total += sum(misfit(motion) for motion in motions)
         total += 0.5 * float((self._information * (x[self._at] - self._mean) ** 2).sum())
-        if self.prior is not None:
-            moved = self._prior_moved(x)
-            total += float(0.5 * moved @ (self.prior.matrix @ moved) - self.prior.vector @ moved)
+        if self._carried is not None:
+            total += self._carried.cost(x)
         return total
 
     def linearise(self, x: Array) -> Linearised:
@@ -131,19 +115,7 @@ class Problem:
         return Linearised(self._jacobian(x), self.rows.residual(x))
 
     def _jacobian(self, x: Array) -> Array:
-        first = x
-        if self.prior is not None:
-            first = x.copy()
-            lasting = self._prior_at >= self.layout.length * self.layout.width
-            first[self._prior_at[lasting]] = self.prior.reference[lasting]
-        return self.rows.jacobian(first)
-
-    def _prior_moved(self, x: Array) -> Array:
-        assert self.prior is not None  # noqa: S101 - asked for with a prior only
-        moved = np.zeros(len(self._prior_at))
-        kept = self._prior_kept
-        moved[kept] = x[self._prior_at[kept]] - self.prior.reference[kept]
-        return moved
+        return self.rows.jacobian(x if self._carried is None else self._carried.first(x))
 
     def weigh(self, residual: Array, slack_m: float = 0.0) -> Weighted:
         """E-step of the readings' noise."""
@@ -176,7 +148,7 @@ class Problem:
         chain = Chain(length, width, layout.border, len(layout.walks))
         size = layout.length * width
         for i, (walk, motion) in enumerate(zip(layout.walks, motions, strict=True)):
-            own, count = slice(STATES * i, STATES * (i + 1)), min(walk.last, length - 1) - walk.first
+            own, count = slice(STATES * i, STATES * (i + 1)), max(min(walk.last, length - 1) - walk.first, 0)
             chain.diagonal[: walk.first, own, own] = np.eye(STATES)
             chain.diagonal[walk.last + 1 :, own, own] = np.eye(STATES)
             add_motion(
@@ -200,8 +172,8 @@ class Problem:
         rest = self._at[~moving] - size
         chain.corner[rest, rest] += self._information[~moving]
         chain.corner_gradient[rest] += pull[~moving]
-        if self.prior is not None:
-            self._add_prior(chain, x)
+        if self._carried is not None:
+            self._carried.add(chain, x)
         information, slabs = weighted.information, rows.slab
         if until is not None:
             information = np.where(rows.t < layout.grid[until], information, 0.0)
@@ -220,15 +192,20 @@ class Problem:
         return chain
 
     def _step(
-        self, x: Array, linear: Linearised, motions: list[Motion], slack_m: float, damping: float
+        self, x: Array, linear: Linearised, motions: list[Motion], slack_m: float, damping: float, near: bool
     ) -> tuple[Array, float]:
         """A Newton step, flat, and the gain in log likelihood that it promises.
 
-        With all of the rows' curvature that may be had; only with what is positive where the whole is not, or
-        where the estimate is not near enough yet.
+        Args:
+            x: the estimate, flat.
+            linear: the rows there.
+            motions: the walks' motion there.
+            slack_m: how far off it may be (m).
+            damping: see `Chain.damp`.
+            near: it is near the optimum: negative curvature counts, as long as the whole stays positive.
         """
         weighted = self.weigh(linear.residual, slack_m)
-        for signed in (False,) if slack_m > 0.0 else (True, False):
+        for signed in (True, False) if near else (False,):
             chain = self.assemble(x, linear, weighted, motions)
             self._bend(chain, x, weighted, signed)
             chain.damp(damping)
@@ -259,21 +236,6 @@ class Problem:
             chain.corner_gradient,
         )
 
-    def _add_prior(self, chain: Chain, x: Array) -> None:
-        assert self.prior is not None  # noqa: S101 - asked for with a prior only
-        size = self.layout.length * self.layout.width
-        kept = self._prior_kept
-        at = self._prior_at[kept]
-        matrix = self.prior.matrix[np.ix_(kept, kept)]
-        vector = (self.prior.vector - self.prior.matrix @ self._prior_moved(x))[kept]
-        moving = at < size
-        own, rest = at[moving], at[~moving] - size
-        chain.diagonal[0][np.ix_(own, own)] += matrix[np.ix_(moving, moving)]
-        chain.border[0][np.ix_(own, rest)] += matrix[np.ix_(moving, ~moving)]
-        chain.corner[np.ix_(rest, rest)] += matrix[np.ix_(~moving, ~moving)]
-        chain.gradient[0][own] += vector[moving]
-        chain.corner_gradient[rest] += vector[~moving]
-
     def solve(
         self, x: Array, slacks_m: tuple[float, ...] = (), iterations: int = 20, resting: float = RESTING
     ) -> Solved:
@@ -290,22 +252,23 @@ class Problem:
         linear, motions = self.linearise(x), self.motions(x)
         self.rows.widen(x, linear.jacobian)
         cost = self.cost(x, linear.residual, motions)
-        damping = 0.0
+        damping, near = 0.0, False
         for iteration in range(iterations):
             slack = slacks_m[iteration] if iteration < len(slacks_m) else 0.0
-            step, promised = self._step(x, linear, motions, slack, damping)
+            step, promised = self._step(x, linear, motions, slack, damping, near and slack == 0.0)
             there = self._there(x + step)
             if slack == 0.0 and promised > resting:
                 # The parabola through the cost here, its slope and the cost there: where it is lowest.
                 share = promised / max(2.0 * promised - (cost - there.cost), promised / FARTHEST)
                 if abs(share - 1.0) > CLOSE:
                     there = min(there, self._there(x + max(share, LEAST_SHARE) * step), key=lambda p: p.cost)
-            if slack == 0.0 and there.cost > cost + ACCEPTED:
+            if slack == 0.0 and not there.cost <= cost + ACCEPTED:
                 # The parabola reaches farther than it holds: shorter steps, and more along the slope.
                 damping = max(10.0 * damping, LEAST_DAMPING)
                 if damping > MOST_DAMPING:
                     break
                 continue
+            near = cost - there.cost < NEAR
             x, motions, cost = there.x, there.motions, there.cost
             linear = Linearised(self._jacobian(x), there.residual)
             if slack == 0.0 and promised < resting and damping <= LEAST_DAMPING:

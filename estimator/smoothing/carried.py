@@ -1,0 +1,70 @@
+"""What has left the window, laid on its unknowns: the prior of its first keyframe and of the border."""
+
+import numpy as np
+
+from estimator.fusion.prior import Key, Prior
+from estimator.graph.dense import Array, Indices
+from estimator.smoothing.chain import Chain
+from estimator.smoothing.layout import Layout
+from estimator.smoothing.walks import STATES
+
+
+class Carried:
+    """A prior among the unknowns of a window.
+
+    Args:
+        layout: of the window.
+        prior: what is known from before.
+    """
+
+    def __init__(self, layout: Layout, prior: Prior) -> None:
+        self._prior = prior
+        self._size = layout.length * layout.width
+        columns = [_columns(layout, key) for key in prior.keys]
+        self._at = np.concatenate(columns or [np.zeros(0, dtype=np.intp)]).astype(np.intp)
+        self._kept = np.flatnonzero(self._at >= 0)
+
+    def first(self, x: Array) -> Array:
+        """The estimate with the border where the prior was linearised, flat."""
+        first = x.copy()
+        lasting = self._at >= self._size
+        first[self._at[lasting]] = self._prior.reference[lasting]
+        return first
+
+    def cost(self, x: Array) -> float:
+        """Its negative log likelihood at an estimate, flat, up to a constant."""
+        moved = self._moved(x)
+        return float(0.5 * moved @ (self._prior.matrix @ moved) - self._prior.vector @ moved)
+
+    def add(self, chain: Chain, x: Array) -> None:
+        """Add it to the normal equations at an estimate, flat."""
+        kept = self._kept
+        at = self._at[kept]
+        matrix = self._prior.matrix[np.ix_(kept, kept)]
+        vector = (self._prior.vector - self._prior.matrix @ self._moved(x))[kept]
+        moving = at < self._size
+        own, rest = at[moving], at[~moving] - self._size
+        chain.diagonal[0][np.ix_(own, own)] += matrix[np.ix_(moving, moving)]
+        chain.border[0][np.ix_(own, rest)] += matrix[np.ix_(moving, ~moving)]
+        chain.corner[np.ix_(rest, rest)] += matrix[np.ix_(~moving, ~moving)]
+        chain.gradient[0][own] += vector[moving]
+        chain.corner_gradient[rest] += vector[~moving]
+
+    def _moved(self, x: Array) -> Array:
+        moved = np.zeros(len(self._at))
+        moved[self._kept] = x[self._at[self._kept]] - self._prior.reference[self._kept]
+        return moved
+
+
+def _columns(layout: Layout, key: Key) -> Indices:
+    """Flat columns of a prior's block; −1 where it is no longer there."""
+    kind, number = key
+    size = layout.length * layout.width
+    if kind == "walk":
+        start = layout.column_of.get(number)
+        return np.full(STATES, -1) if start is None else np.arange(start, start + STATES)
+    if kind == "stand":
+        start = layout.stands.get(number)
+        return np.full(3, -1) if start is None else size + np.arange(start, start + 3)
+    start = layout.technologies.get(key)
+    return np.full(2, -1) if start is None else size + np.arange(start, start + 2)
