@@ -28,6 +28,8 @@ from estimator.trackers.base import TrackerSettings
 SLACKS_M = (3.0, 1.0, 0.3)
 LEARNING = (1.5, 1.0, 0.5)
 """How far the logarithms of noise variances may move, solution by solution."""
+LEARNING_RESTING = 0.01
+"""What a solution may leave of its log likelihood that is only learned from."""
 LONGEST_S = 86_400.0
 """No incident lasts longer: a reading farther than a day from the others has a wrong epoch."""
 RARER = 8.0
@@ -99,9 +101,11 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
         rows.learn(state.noise)
         problem = Problem(layout, rows, None)
         if x is None:
-            solved = problem.solve(layout.start(), SLACKS_M)
+            solved = problem.solve(layout.start(), SLACKS_M, resting=LEARNING_RESTING)
+        elif most is not None:
+            solved = problem.solve(x, iterations=3, resting=LEARNING_RESTING)
         else:
-            solved = problem.solve(x, iterations=10 if most is None else 3)
+            solved = problem.solve(x, iterations=10)
         if most is not None:
             learn(state, problem, solved, most)
         x = solved.x
