@@ -41,6 +41,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     sources: tuple[str, ...]
     newest_t: float
     due: bool
+    suspected: bool
     begun_t: float | None
     refreshed_t: float
     window_t: float | None
@@ -71,6 +72,7 @@ def record_of(state: FusionState) -> FusionRecord:
         state.sources,
         state.newest_t,
         state.due,
+        state.suspected,
         state.begun_t,
         state.refreshed_t,
         state.window_t,
@@ -99,6 +101,7 @@ def state_of(record: FusionRecord) -> FusionState:
     for name in COLUMNS:
         state.ledger.replace(name, unpack(record.tables[name]))
     state.newest_t, state.due, state.begun_t = record.newest_t, record.due, record.begun_t
+    state.suspected = record.suspected
     state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
     state.uncalibrated, state.bent_m = record.uncalibrated, record.bent_m
     if record.prior is not None:

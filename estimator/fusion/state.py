@@ -36,6 +36,7 @@ class FusionState:
         newest_t: end of the newest tick, Unix seconds.
         bent_m: how far updates have bent the window since it was last solved (m).
         due: the window is to be solved again at once.
+        suspected: a standing node may have been moved: its newest readings disagree with its place.
         begun_t: end of the first tick with a node in it.
         refreshed_t: end of the tick at which the window was last solved.
         window_t: epoch of the window's first keyframe.
@@ -62,6 +63,7 @@ class FusionState:
         self.newest_t = 0.0
         self.bent_m = 0.0
         self.due = False
+        self.suspected = False
         self.begun_t: float | None = None
         self.refreshed_t = 0.0
         self.window_t: float | None = None

@@ -59,15 +59,15 @@ class Changed(NamedTuple):
     change_db: float
 
 
-def moved_nodes(problem: Problem, solved: Solved) -> list[Moved]:
-    """The standing nodes that the newest readings put elsewhere."""
+def moved_nodes(problem: Problem, solved: Solved) -> tuple[list[Moved], bool]:
+    """The standing nodes that the newest readings put elsewhere, and whether some others may be elsewhere."""
     state, rows = problem.layout.state, problem.rows
     m = len(rows.pairs)
     kinds = rows.pairs[:, 1]
     now = float(problem.layout.grid[-1])
     cost = cauchy_cost(solved.linear.residual[:m] / rows.sigma[:m], CAUCHY)
     recent = (rows.pairs[:, 0] > now - RECENT_S) & (kinds <= RSSI)
-    found = []
+    found, suspected = [], False
     for node in state.nodes.values():
         if node.mode != "static" or node.role == "anchor":
             continue
@@ -79,12 +79,13 @@ def moved_nodes(problem: Problem, solved: Solved) -> list[Moved]:
         seen = _seen(problem, solved, node, mine[first:])
         place = None if seen is None else _elsewhere(seen)
         if seen is None or place is None:
+            suspected = True
             continue
         # What drew the node off its place may be the newest readings, and what disagrees all the others.
         newest = _disagreeing(cauchy_cost(seen.residual_at(place) / seen.sought.sigma, CAUCHY))
         since_t = float(seen.t[0 if newest is None else newest])
         found.append(Moved(node.node, since_t, int((rows.pairs[mine, 0] >= since_t).sum())))
-    return found
+    return found, suspected
 
 
 def _disagreeing(cost: Array) -> int | None:

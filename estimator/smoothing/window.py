@@ -38,6 +38,8 @@ YOUNG = 0.03
 BENT_M = 1.0
 CALM = 4.0
 """Periods after which the window is solved again though nothing has bent it."""
+SUSPENSE = 0.5
+"""Periods after which it is solved again where a breadcrumb may lie elsewhere."""
 GONE = 4.0
 """A window this many times as long as it may be is begun anew."""
 ITERATIONS = 4
@@ -63,6 +65,7 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
     turned = any(node.turned for node in state.nodes.values())
     age = (t - state.refreshed_t) / (rarer * period_s(state))
     waited = age >= CALM or (age >= 1.0 and state.bent_m > BENT_M)
+    waited = waited or (state.suspected and age >= SUSPENSE)
     if not (state.due or turned or waited):
         return
     state.due, state.refreshed_t, state.bent_m = False, t, 0.0
@@ -153,7 +156,8 @@ def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
         pair = sorted((link.a, link.b))
         text = f"the link between {pair[0]} and {pair[1]} changed by {link.change_db:+.0f} dB for good"
         state.say("link_changed", link.t, pair[0], text, once=f"link {pair[0]} {pair[1]}")
-    for moved in moved_nodes(problem, solved):
+    moves, state.suspected = moved_nodes(problem, solved)
+    for moved in moves:
         node = state.nodes[moved.name]
         number = state.number(moved.name)
         pairs = state.ledger.table("pairs")
