@@ -1,6 +1,7 @@
 """Readings of one tick as a table of numbers: what each is held against, and its linearisation, compiled."""
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from operator import itemgetter
 from typing import NamedTuple
 
@@ -99,7 +100,8 @@ def table_of(starts: Mapping[Variable, int], singles: Sequence[Single], pairs: S
         pairs: readings between two nodes.
     """
     rows = [Row(ONE, starts[s.variable] + s.axis, s.value, s.sigma, *s.noise, s.sigma) for s in singles]
-    return np.array([*rows, *sorted(pairs, key=itemgetter(KIND))], dtype=np.float64).reshape(-1, FIELDS)
+    rows.extend(sorted(pairs, key=itemgetter(KIND)))
+    return np.fromiter(chain.from_iterable(rows), np.float64, FIELDS * len(rows)).reshape(-1, FIELDS)
 
 
 @njit(cache=True, error_model="numpy")

@@ -123,7 +123,7 @@ def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Sing
             between.append(reading)
         elif isinstance(reading, Position):
             singles.extend(held.fix(state, reading))
-        elif isinstance(reading, Altitude | Pressure):
+        elif isinstance(reading, (Altitude, Pressure)):
             singles.extend(held.height(state, reading))
         elif isinstance(reading, Drop):
             _drop(state, reading)
@@ -212,12 +212,12 @@ def _drop(state: FusionState, reading: Drop) -> None:
 def _pair(state: FusionState, pairs: held.Pairs, reading: Range | Rssi | Bearing) -> None:
     a = state.node_of(reading.a, "breadcrumb", reading.t)
     b = state.node_of(reading.b, "breadcrumb", reading.t)
-    for node, other in ((a, b), (b, a)):
-        if node.mode == "retired":
-            text = f"{node.node} is retired: what {other.node} measures to it is set aside"
-            state.say("conflict", reading.t, node.node, text, once=f"pair with retired {node.node}")
-            state.count("not_fused")
-            return
+    if "retired" in (a.mode, b.mode):
+        node, other = (a, b) if a.mode == "retired" else (b, a)
+        text = f"{node.node} is retired: what {other.node} measures to it is set aside"
+        state.say("conflict", reading.t, node.node, text, once=f"pair with retired {node.node}")
+        state.count("not_fused")
+        return
     if a.decided and b.decided:
         if a.mode == "fixed" and b.mode == "fixed":
             state.count("not_fused")

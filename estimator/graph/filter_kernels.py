@@ -1,6 +1,7 @@
 """Loops of the Kirchhoff state, compiled: they take plain arrays and know nothing of nodes or readings.
 
-The matrices have some tens of rows, where calling LAPACK for each little step costs more than the step.
+The matrices have some tens of rows, where calling LAPACK for each little step costs more than the step. Inner
+loops run over views from 0 on, because only those become vector instructions.
 """
 
 import numpy as np
@@ -8,7 +9,7 @@ from numba import njit
 
 from estimator.graph.dense import MAX_JITTER, Array, Indices
 
-BLOCK = 24
+BLOCK = 32
 """Rows that are eliminated one by one before the rest is left to one product of matrices."""
 
 
@@ -27,12 +28,13 @@ def cholesky(matrix: Array) -> bool:
             if not pivot > 0.0:
                 return False
             unscale = 1.0 / np.sqrt(pivot)
-            for j in range(k, n):
-                matrix[k, j] *= unscale
+            whole = matrix[k, k:]
+            for j in range(len(whole)):
+                whole[j] *= unscale
             for i in range(k + 1, last):
-                pulled = matrix[k, i]
-                for j in range(i, n):
-                    matrix[i, j] -= pulled * matrix[k, j]
+                pulled, own, row = matrix[k, i], matrix[i, i:], matrix[k, i:]
+                for j in range(len(own)):
+                    own[j] -= pulled * row[j]
         if last < n:
             done = matrix[first:last, last:].copy()
             matrix[last:, last:] -= np.dot(done.T, done)
@@ -57,9 +59,10 @@ def factorised(matrix: Array, factor: Array, unscale: Array) -> bool:
     jitter = 0.0
     while jitter <= MAX_JITTER:
         for i in range(n):
-            for j in range(i, n):
-                factor[i, j] = matrix[i, j] * unscale[i] * unscale[j]
-            factor[i, i] += jitter
+            own, scaled = matrix[i], factor[i]
+            for j in range(n):
+                scaled[j] = own[j] * unscale[i] * unscale[j]
+            scaled[i] += jitter
         if cholesky(factor):
             return True
         jitter = 1e-13 if jitter == 0.0 else jitter * 10.0
@@ -72,9 +75,9 @@ def forward(factor: Array, right: Array, first: int) -> None:
     n = len(right)
     for i in range(first, n):
         right[i] /= factor[i, i]
-        known = right[i]
-        for j in range(i + 1, n):
-            right[j] -= factor[i, j] * known
+        known, rest, row = right[i], right[i + 1 :], factor[i, i + 1 :]
+        for j in range(len(rest)):
+            rest[j] -= row[j] * known
 
 
 @njit(cache=True, error_model="numpy")
@@ -84,10 +87,7 @@ def solved(factor: Array, unscale: Array, right: Array) -> Array:
     forward(factor, answer, 0)
     n = len(answer)
     for i in range(n - 1, -1, -1):
-        left = answer[i]
-        for j in range(i + 1, n):
-            left -= factor[i, j] * answer[j]
-        answer[i] = left / factor[i, i]
+        answer[i] = (answer[i] - np.dot(factor[i, i + 1 :], answer[i + 1 :])) / factor[i, i]
     return answer * unscale
 
 

@@ -32,7 +32,8 @@ def warm_up() -> None:
     _warm_filter()
     one, place = np.ones(2), np.zeros((2, 3))
     strided = np.full((2, 3), 0.5).T
-    predict_range(place, place, strided[0], strided[1])
+    for states in ((one, one), (strided[0], strided[1])):
+        predict_range(place, place, *states)
     predict_rssi(place, place, one, strided[1])
     predict_bearing(place, place, one)
     wrap(one)
