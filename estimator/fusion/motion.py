@@ -184,6 +184,7 @@ def increment_of(node: NodeState, reading: Displacement) -> Increment | None:
         still=stood,
         way_m=node.way_m + length,
     )
+    up += (physics.SCALE_SIGMA * u) ** 2
     noise = _sum((across, across, up, 0.0, 0.0, 0.0), _walk_noise(reading.sigma_m, length, duration))
     return Increment(after, (e, n, u), duration, noise, turn, too_fast)
 

@@ -45,8 +45,8 @@ class Way:
             return self._rest
         e, n, u = between(self._marks, t)
         _, last_e, last_n, last_u = self._marks[-1]
-        e, n, u = (e - last_e) * self._stretch, (n - last_n) * self._stretch, (u - last_u) * self._stretch
-        return self._cosine * e - self._sine * n, self._sine * e + self._cosine * n, u
+        e, n = (e - last_e) * self._stretch, (n - last_n) * self._stretch
+        return self._cosine * e - self._sine * n, self._sine * e + self._cosine * n, u - last_u
 
 
 def between(marks: Marks, t: float) -> Vector3:

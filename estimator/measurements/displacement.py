@@ -54,7 +54,8 @@ class Moved(NamedTuple):
 def move(state: Array, delta_m: Array, duration_s: Array) -> Moved:
     """P' = p + s Rz(ψ) δ and ψ' = ψ + β Δt (estimation.md, point 1): the unit's frame turns while it walks.
 
-    The frame's turn halfway is used for the displacement, exact to second order in β Δt.
+    The frame's turn halfway is used for the displacement, exact to second order in β Δt. The scale is that of
+    steps: heights are not scaled, or an error of the air pressure's heights would stretch the whole map.
 
     Args:
         state: east, north, up (m), ψ (rad), β (rad/s), s − 1 of each unit, g × 6.
@@ -69,16 +70,15 @@ def move(state: Array, delta_m: Array, duration_s: Array) -> Moved:
         cosine, sine = np.cos(halfway), np.sin(halfway)
         east = cosine * delta_m[i, 0] - sine * delta_m[i, 1]
         north = sine * delta_m[i, 0] + cosine * delta_m[i, 1]
-        up = delta_m[i, 2]
         after[i, 0] += scale * east
         after[i, 1] += scale * north
-        after[i, 2] += scale * up
+        after[i, 2] += delta_m[i, 2]
         after[i, 3] += bias * duration_s[i]
         for axis in range(6):
             transition[i, axis, axis] = 1.0
         transition[i, 0, 3], transition[i, 1, 3] = -scale * north, scale * east
         transition[i, 0, 4] = transition[i, 0, 3] * 0.5 * duration_s[i]
         transition[i, 1, 4] = transition[i, 1, 3] * 0.5 * duration_s[i]
-        transition[i, 0, 5], transition[i, 1, 5], transition[i, 2, 5] = east, north, up
+        transition[i, 0, 5], transition[i, 1, 5] = east, north
         transition[i, 3, 4] = duration_s[i]
     return Moved(after, transition)

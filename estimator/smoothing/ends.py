@@ -77,7 +77,6 @@ def place_ends(ends: Table, x: Array) -> Places:
             turned[i, 0, 0], turned[i, 1, 0] = led.by_heading_e, led.by_heading_n
             turned[i, 0, 1], turned[i, 1, 1] = led.by_bias_e, led.by_bias_n
             turned[i, 0, 2], turned[i, 1, 2] = led.by_scale_e, led.by_scale_n
-            turned[i, 2, 2] = ends.delta_m[i, 2]
         elif kind == FREE:
             for c in range(3):
                 place[i, c] += x[at[3 + c]] * ends.duration_s[i]

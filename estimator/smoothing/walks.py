@@ -118,14 +118,17 @@ class Led(NamedTuple):
 
 @njit(cache=True)
 def lead(psi: float, bias: float, scale: float, delta_m: Array, moment: Array) -> Led:
-    """What is s Rz(ψ) (Δ + β J M) of one displacement Δ (3) with its first moment M (3), and its slopes."""
+    """What is s Rz(ψ) (Δ + β J M) of one displacement Δ (3) with its first moment M (3), and its slopes.
+
+    Heights are not scaled: see `measurements.displacement.move`.
+    """
     cosine, sine = np.cos(psi), np.sin(psi)
     bent_e, bent_n = delta_m[0] - bias * moment[1], delta_m[1] + bias * moment[0]
     east, north = cosine * bent_e - sine * bent_n, sine * bent_e + cosine * bent_n
     return Led(
         scale * east,
         scale * north,
-        scale * delta_m[2],
+        delta_m[2],
         -scale * north,
         scale * east,
         -scale * (cosine * moment[1] + sine * moment[0]),
@@ -150,11 +153,7 @@ def led_by(before: Array, delta_m: Array, moment: Array, durations_s: Array) -> 
             transition[i, c, c] = 1.0
         transition[i, 0, 3], transition[i, 1, 3] = led.by_heading_e, led.by_heading_n
         transition[i, 0, 4], transition[i, 1, 4] = led.by_bias_e, led.by_bias_n
-        transition[i, 0, 5], transition[i, 1, 5], transition[i, 2, 5] = (
-            led.by_scale_e,
-            led.by_scale_n,
-            delta_m[i, 2],
-        )
+        transition[i, 0, 5], transition[i, 1, 5] = led.by_scale_e, led.by_scale_n
         transition[i, 3, 4] = durations_s[i]
     return after, transition
 
@@ -202,7 +201,7 @@ def unit_motion(between: Array, durations_s: Array, states: Array) -> Motion:
         # The noise is the unit's own: it is scaled with what it reports. Were it not, a smaller scale would
         # always fit better, for it makes every step's error smaller; so the derivative is by the way that
         # was gone.
-        for r in range(3):
+        for r in range(2):
             noise[i, r, r] *= scale**2
             transition[i, r, 5] = (states[i + 1, r] - states[i, r]) / scale
         for r in range(2):
