@@ -1,5 +1,6 @@
 """Readings as they are held against the graph: fixes and heights against one node, pairs between two."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -177,20 +178,29 @@ class Pairs:
         known = self._technologies.get(told.source) or self._technology(told)
         link, key = enter(self._state, a, b, reading.t, told)
         from_a, from_b = self._way(a), self._way(b)
+        at_a, at_b = from_a.offset(reading.t), from_b.offset(reading.t)
+        sigma = link_sigma(known.factor, known.shared, told.sigma, link.alike)
+        through = abs(from_a.up_m + at_a[2] - from_b.up_m - at_b[2]) > physics.FLOOR_M
+        if through and not physics.OUTSIDE_ROLES & {a.role, b.role}:
+            # It tells nothing of what its technology is like where no floor is between.
+            sigma = math.hypot(sigma, physics.FLOOR_SIGMA[told.kind == RSSI])
+            number = line = -1
+        else:
+            number, line = known.number, self.links.setdefault(key, len(self.links))
         return Row(
             told.kind,
             from_a.start,
             told.value,
-            link_sigma(known.factor, known.shared, told.sigma, link.alike),
+            sigma,
             *known.noise,
             told.sigma,
             from_b.start,
             known.start,
             told.sent,
-            known.number,
-            self.links.setdefault(key, len(self.links)),
-            *from_a.offset(reading.t),
-            *from_b.offset(reading.t),
+            number,
+            line,
+            *at_a,
+            *at_b,
         )
 
     def _bearing(self, a: NodeState, b: NodeState, reading: Bearing) -> Row | None:

@@ -97,6 +97,13 @@ ENCOUNTER_M = 3.0
 RSSI_NOISE = Mixture(outliers=0.05, shift=-8.0, spread=12.0)
 """A wall, a body or a fire takes away power; nothing adds much."""
 
+FLOOR_M = 2.0
+"""Between two radios inside that differ by more in height there is a floor."""
+FLOOR_SIGMA = (3.0, 20.0)
+"""What is added to the noise of a range (m) and of a signal (dB) through a floor. It takes 10 to 20 dB and
+makes ranges half a metre too long. That is no noise: taken for it, many such readings would bend the map."""
+OUTSIDE_ROLES = frozenset({"uav", "anchor"})
+
 BEARING_SIGMA_RAD = 0.2
 BEARING_NOISE = Mixture(outliers=0.1, shift=0.0, spread=1.0)
 FIX_NOISE = Mixture(outliers=0.02, shift=0.0, spread=30.0)

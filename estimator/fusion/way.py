@@ -15,15 +15,17 @@ class Way:
 
     Attributes:
         start: first row of the node's block; −1: it is fixed.
+        up_m: height of that block (m); 0 where it is fixed.
     """
 
-    __slots__ = ("_cosine", "_marks", "_pose_t", "_rest", "_sine", "_stretch", "_velocity", "start")
+    __slots__ = ("_cosine", "_marks", "_pose_t", "_rest", "_sine", "_stretch", "_velocity", "start", "up_m")
 
     def __init__(self, state: FusionState, node: NodeState) -> None:
         graph = state.graph
         fixed = node.mode == "fixed" and node.place_m is not None
         self.start = -1 if fixed else graph.starts[node.position]
         self._rest: Vector3 = node.place_m if fixed and node.place_m is not None else NOWHERE
+        self.up_m = 0.0 if fixed else float(graph.reference[self.start + 2])
         self._pose_t = node.pose_t
         self._velocity: Vector3 | None = None
         self._marks: Marks = ()

@@ -113,6 +113,12 @@ class Rows:
         self.pairs: Array = pairs[chosen]
         self._a, self._b, self._extra = a, b, extra[chosen]
         self._slab = np.where(a.moving, a.slab, b.slab)
+        nodes = layout.state.nodes
+        outside = np.array(
+            [nodes[name].role in physics.OUTSIDE_ROLES for name in layout.state.owners], dtype=bool
+        )
+        both = self.pairs[:, 2:4].astype(np.int64)
+        self._inside = (self.pairs[:, 1] <= RSSI) & ~outside[both].any(axis=1)
 
     def _singles(self, layout: Layout, since_t: float) -> None:
         singles = layout.state.ledger.table("singles")
@@ -158,7 +164,8 @@ class Rows:
     def widen(self, x: Array, jacobian: Array) -> None:
         """What the estimate says of each reading's noise.
 
-        An encounter is sharp; a reading between two keyframes has the noise of the unit's own way as well.
+        Through a floor it is worth little, and an encounter is sharp; a reading between two keyframes has the
+        noise of the unit's own way as well.
 
         Args:
             x: the estimate, flat.
@@ -166,12 +173,20 @@ class Rows:
         """
         self.sigma = self._told.copy()
         m, n = len(self.pairs), len(self.singles)
+        self._through_floors(x)
         self._sharpen(x)
         for columns, ends in ((slice(0, 3), self._a), (slice(6, 9), self._b)):
             self._add(slice(0, m), jacobian[:m, columns], ends.unsure_m2)
         self._add(slice(m, m + n), jacobian[m : m + n, :3], self._on.unsure_m2)
         drops = np.repeat(self._by.unsure_m2, 3, axis=0)
         self._add(slice(m + n, len(self.sigma)), jacobian[m + n :, :3], drops)
+
+    def _through_floors(self, x: Array) -> None:
+        m = len(self.pairs)
+        a, b = self.places(x)
+        through = self._inside & (np.abs(a[:, 2] - b[:, 2]) > physics.FLOOR_M)
+        lost = np.where(self.pairs[:, 1] == RANGE, *physics.FLOOR_SIGMA)
+        self.sigma[:m] = np.where(through, np.hypot(self.sigma[:m], lost), self.sigma[:m])
 
     def _sharpen(self, x: Array) -> None:
         at = np.flatnonzero(self._strongest)
