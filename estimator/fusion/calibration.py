@@ -15,9 +15,26 @@ TRUSTED = 0.25
 trusted bends everything; one that is wrongly distrusted costs some sharpness."""
 
 
-def scale_sigma(share: float) -> float:
-    """Standard deviation of the prior of a scale that is uncalibrated with probability `share`."""
-    return physics.RANGE_SCALE_SIGMA if share < TRUSTED else physics.RANGE_SCALE_WIDE
+def narrow_sigma(outliers: float) -> float:
+    """Standard deviation of a calibrated technology's scale among walls.
+
+    The farther a range, the more walls it crosses, and each makes it longer: where many are clearly too
+    long, the others are so too, about in proportion to their length.
+
+    Args:
+        outliers: share of its ranges that are clearly too long, 0 to 1.
+    """
+    return math.hypot(physics.RANGE_SCALE_SIGMA, physics.OBSTRUCTED_SCALE * outliers)
+
+
+def scale_sigma(share: float, narrow: float) -> float:
+    """Standard deviation of the prior of a scale that is uncalibrated with probability `share`.
+
+    Args:
+        share: probability that it is not calibrated.
+        narrow: standard deviation where it is.
+    """
+    return narrow if share < TRUSTED else physics.RANGE_SCALE_WIDE
 
 
 def bias_sigma_m(technology: str) -> float:
@@ -25,13 +42,14 @@ def bias_sigma_m(technology: str) -> float:
     return physics.RANGE_BIAS_SIGMA_M.get(technology, physics.RANGE_BIAS_OTHER_SIGMA_M)
 
 
-def uncalibrated(sigma: float, estimate: float, variance: float) -> float:
+def uncalibrated(sigma: float, estimate: float, variance: float, narrow: float) -> float:
     """Probability that a technology is not calibrated.
 
     Args:
         sigma: standard deviation of the prior, of mean 0, that the estimate was made with.
         estimate: of its scale error.
         variance: of the estimate, the prior included.
+        narrow: standard deviation of the scale of a calibrated technology.
     """
     told = 1.0 / variance - 1.0 / sigma**2
     if told * variance < NOTHING:
@@ -39,7 +57,7 @@ def uncalibrated(sigma: float, estimate: float, variance: float) -> float:
     alone = 1.0 / told
     said = estimate / variance * alone
     odds = _logarithm(said, alone + physics.RANGE_SCALE_WIDE**2)
-    odds -= _logarithm(said, alone + physics.RANGE_SCALE_SIGMA**2)
+    odds -= _logarithm(said, alone + narrow**2)
     odds += math.log(physics.UNCALIBRATED / (1.0 - physics.UNCALIBRATED))
     return 1.0 / (1.0 + math.exp(min(max(-odds, -700.0), 700.0)))
 

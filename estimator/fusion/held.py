@@ -7,7 +7,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.calibration import bias_sigma_m, scale_sigma
+from estimator.fusion.calibration import bias_sigma_m, narrow_sigma, scale_sigma
 from estimator.fusion.introduce import place
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.noise import Link, link_sigma
@@ -279,7 +279,7 @@ def technology_states(state: FusionState, technology: str) -> Variable:
     """The block of scale and bias of a ranging technology, added when first used."""
     states = Variable("range", technology)
     if states not in state.graph:
-        scale = scale_sigma(state.uncalibrated.get(technology, 0.0))
+        scale = scale_sigma(state.uncalibrated.get(technology, 0.0), narrow_sigma(state.outliers(technology)))
         state.graph.add_node(states, (0.0, 0.0), (scale, bias_sigma_m(technology)))
     return states
 

@@ -72,6 +72,8 @@ RANGE_SIGMA_M: dict[str, float] = {"uwb": 0.3, "ultrasound": 0.05, "rtt": 1.3}
 RANGE_SIGMA_OTHER_M = 0.5
 RANGE_SCALE_SIGMA = 0.005
 """A clock is good to a few parts per million; what is left is calibration."""
+OBSTRUCTED_SCALE = 0.1
+"""By how much ranges are too long in all, where all are obstructed."""
 RANGE_SCALE_WIDE = 0.15
 """M: a public UWB-like data set carries +7 % scale."""
 UNCALIBRATED = 0.3

@@ -6,6 +6,7 @@ from typing import Literal, Self
 import numpy as np
 
 from estimator.estimate import Notice, NoticeCode, Vector3
+from estimator.fusion import physics
 from estimator.fusion.ledger import Ledger
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.noise import LearnedNoise, Link
@@ -128,6 +129,10 @@ class FusionState:
             if node.mode == "fixed" and node.place_m is not None:
                 return node.place_m
         return (0.0, 0.0, 0.0)
+
+    def outliers(self, technology: str) -> float:
+        """Share of a ranging technology's readings that are outliers, as far as it is known."""
+        return self.learned(technology).outliers(physics.RANGE_NOISE.outliers)
 
     def learned(self, technology: str) -> LearnedNoise:
         """Noise of a technology, as far as it is known."""

@@ -9,7 +9,7 @@ what the radio does not see of a step stays in V.
 import numpy as np
 from msgspec.structs import replace
 
-from estimator.fusion.calibration import scale_sigma, uncalibrated
+from estimator.fusion.calibration import narrow_sigma, scale_sigma, uncalibrated
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.solve import Problem, Solved
@@ -101,8 +101,9 @@ def calibrate(state: FusionState, problem: Problem, x: Array, border: Array) -> 
     for key, start in problem.layout.technologies.items():
         if key[0] == "range" and key not in known and problem.rows.by_units(key[1]):
             name = state.sources[key[1]]
-            sigma = scale_sigma(state.uncalibrated.get(name, 0.0))
-            told = uncalibrated(sigma, float(x[size + start]), float(border[start, start]))
+            narrow = narrow_sigma(state.outliers(name))
+            sigma = scale_sigma(state.uncalibrated.get(name, 0.0), narrow)
+            told = uncalibrated(sigma, float(x[size + start]), float(border[start, start]), narrow)
             state.uncalibrated[name] = told
             # Another prior bends everything: what follows from it is not left for later.
-            state.due = state.due or scale_sigma(told) != sigma
+            state.due = state.due or scale_sigma(told, narrow) != sigma

@@ -6,16 +6,17 @@ import numpy as np
 import pytest
 
 from estimator.fusion import physics
-from estimator.fusion.calibration import TRUSTED, scale_sigma, uncalibrated
+from estimator.fusion.calibration import TRUSTED, narrow_sigma, scale_sigma, uncalibrated
 
-SIGMAS = [scale_sigma(0.0), 0.03, scale_sigma(1.0)]
+NARROW = narrow_sigma(0.0)
+SIGMAS = [scale_sigma(0.0, NARROW), 0.03, scale_sigma(1.0, NARROW)]
 """Of priors that an estimate may have been made with."""
 
 
 def judged(sigma: float, truth: float, alone: float) -> float:
     """What is said of a technology whose scale is read as `truth` with standard deviation `alone`."""
     variance = 1.0 / (sigma**-2 + alone**-2)
-    return uncalibrated(sigma, truth * variance / alone**2, variance)
+    return uncalibrated(sigma, truth * variance / alone**2, variance, NARROW)
 
 
 @pytest.mark.parametrize("sigma", SIGMAS)
@@ -34,7 +35,7 @@ def test_what_a_units_own_scale_may_explain_is_no_reason_for_distrust(sigma: flo
 
 @pytest.mark.parametrize("sigma", SIGMAS)
 def test_where_nothing_is_known_the_usual_share_stays(sigma: float) -> None:
-    assert uncalibrated(sigma, 0.0, sigma**2) == physics.UNCALIBRATED
+    assert uncalibrated(sigma, 0.0, sigma**2, NARROW) == physics.UNCALIBRATED
     assert judged(sigma, 0.5, 10.0) == pytest.approx(physics.UNCALIBRATED, rel=0.01)
 
 
@@ -56,3 +57,9 @@ def test_the_odds_are_those_of_two_gaussians() -> None:
     wide = physics.UNCALIBRATED * density(said, math.hypot(alone, physics.RANGE_SCALE_WIDE))
     narrow = (1.0 - physics.UNCALIBRATED) * density(said, math.hypot(alone, physics.RANGE_SCALE_SIGMA))
     assert judged(0.1, said, alone) == pytest.approx(wide / (wide + narrow), rel=1e-9)
+
+
+def test_where_walls_make_many_ranges_too_long_a_scale_of_some_percent_is_no_miscalibration() -> None:
+    in_sight, obstructed = (uncalibrated(0.15, 0.04, 0.01**2, narrow_sigma(share)) for share in (0.02, 0.4))
+    assert in_sight > 0.9
+    assert obstructed < 0.5
