@@ -1,8 +1,9 @@
-"""All places from which a set of ranges or powers may come: one robust solve from many starts at once."""
+"""All places from which a set of ranges or powers may come: a robust solve from many starts."""
 
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numba import njit
 
 from estimator.graph.dense import Array
 from estimator.measurements.range import predict_range
@@ -12,7 +13,11 @@ ANGLES = 12
 STEPS = 25
 CAUCHY = 2.0
 APART_M = 2.0
+RESTING = 1e-4
+"""Gain in log likelihood below which a place has been found."""
 USED_MAX = 120
+LEAST_INFORMATION = 1e-8
+"""On a place that no reading tells of: 10 km."""
 
 
 class Sought(NamedTuple):
@@ -58,25 +63,17 @@ class Mode(NamedTuple):
 def find_modes(sought: Sought) -> list[Mode]:
     """Places that fit, best first, each apart from the better ones (`APART_M`, or three sigma).
 
-    Levenberg-Marquardt with the Cauchy loss from rings around the first, middle and last place, all starts in
-    one batch; the technology's states are solved along, so that an unknown scale does not spoil the fit.
+    Levenberg-Marquardt with the Cauchy loss from rings around the first, middle and last place. The states of
+    the technology are solved along, so that an unknown scale does not spoil the fit.
     """
     sought = _thinned(sought)
-    state = _starts(sought)
-    normal, gradient, cost = _linearise(sought, state)
-    damping = np.full(len(state), 1e-3)
-    diagonal = np.arange(5)
-    for _ in range(STEPS):
-        damped = normal.copy()
-        damped[:, diagonal, diagonal] *= 1.0 + damping[:, None]
-        there = state + np.linalg.solve(damped, gradient[:, :, None])[:, :, 0]
-        normal_there, gradient_there, cost_there = _linearise(sought, there)
-        better = cost_there < cost
-        state = np.where(better[:, None], there, state)
-        normal = np.where(better[:, None, None], normal_there, normal)
-        gradient = np.where(better[:, None], gradient_there, gradient)
-        cost = np.where(better, cost_there, cost)
-        damping = np.clip(np.where(better, damping * 0.3, damping * 8.0), 1e-9, 1e9)
+    prior = np.zeros((5, 5))
+    prior[2, 2] = sought.up_sigma_m**-2
+    prior[3:, 3:] = np.linalg.inv(sought.extra_covariance)
+    mean = np.array([0.0, 0.0, sought.up_m, *sought.extra])
+    ranged = sought.kind == "range"
+    told = np.ascontiguousarray(sought.points), np.ascontiguousarray(sought.value), sought.sigma
+    state, normal, cost = _descend(ranged, *told, _starts(sought), prior, mean)
     modes: list[Mode] = []
     for i in np.argsort(cost, kind="stable"):
         covariance = np.linalg.inv(normal[i])[:3, :3]
@@ -112,25 +109,77 @@ def _starts(sought: Sought) -> Array:
     return np.column_stack([horizontal, rest])
 
 
-def _linearise(sought: Sought, state: Array) -> tuple[Array, Array, Array]:
-    """Normal matrices s × 5 × 5, gradients s × 5 and costs s at states s × 5."""
-    s, m = len(state), len(sought.value)
-    here = np.repeat(state[:, :3], m, axis=0)
-    points = np.tile(sought.points, (s, 1))
-    predict = predict_range if sought.kind == "range" else predict_rssi
-    got = predict(points, here, np.repeat(state[:, 3], m), np.repeat(state[:, 4], m))
-    jacobian = np.concatenate([got.by_b, got.by_extra], axis=1).reshape(s, m, 5) / sought.sigma[:, None]
-    residual = (sought.value - got.predicted.reshape(s, m)) / sought.sigma
-    weight = 1.0 / (1.0 + (residual / CAUCHY) ** 2)
-    prior = np.zeros((5, 5))
-    prior[0, 0] = prior[1, 1] = 1e-8
-    prior[2, 2] = sought.up_sigma_m**-2
-    prior[3:, 3:] = np.linalg.inv(sought.extra_covariance)
-    mean = np.array([0.0, 0.0, sought.up_m, *sought.extra])
+@njit(cache=True)
+def _descend(
+    ranged: bool, points: Array, value: Array, sigma: Array, starts: Array, prior: Array, mean: Array
+) -> tuple[Array, Array, Array]:
+    """States s × 5, normal matrices s × 5 × 5 and costs s that Levenberg-Marquardt comes to from each start.
+
+    Args:
+        ranged: the values are ranges, not powers.
+        points: see `Sought`, m × 3 (m).
+        value: see `Sought`, m.
+        sigma: see `Sought`, m.
+        starts: position and states of the technology, s × 5.
+        prior: information on them, 5 × 5.
+        mean: of that prior, 5.
+    """
+    found = starts.copy()
+    normals, costs = np.empty((len(starts), 5, 5)), np.empty(len(starts))
+    for i in range(len(starts)):
+        state, damping = starts[i].copy(), 1e-3
+        normal, gradient, cost = _linearise(ranged, points, value, sigma, state, prior, mean)
+        for _ in range(STEPS):
+            damped = normal.copy()
+            for r in range(5):
+                damped[r, r] *= 1.0 + damping
+            there = state + np.linalg.solve(damped, gradient)
+            normal_there, gradient_there, cost_there = _linearise(
+                ranged, points, value, sigma, there, prior, mean
+            )
+            if cost_there < cost:
+                gained = cost - cost_there
+                state, normal, gradient, cost = there, normal_there, gradient_there, cost_there
+                damping = max(damping * 0.3, 1e-9)
+                if gained < RESTING:
+                    break
+            else:
+                damping = min(damping * 8.0, 1e9)
+        found[i], normals[i], costs[i] = state, normal, cost
+    return found, normals, costs
+
+
+@njit(cache=True)
+def _linearise(
+    ranged: bool, points: Array, value: Array, sigma: Array, state: Array, prior: Array, mean: Array
+) -> tuple[Array, Array, float]:
+    """Normal matrix 5 × 5, gradient 5 and cost at a state, 5."""
+    m = len(value)
+    here, one = np.empty((m, 3)), np.ones(m)
+    for axis in range(3):
+        here[:, axis] = state[axis]
+    if ranged:
+        got = predict_range(points, here, one * state[3], one * state[4])
+    else:
+        got = predict_rssi(points, here, one * state[3], one * state[4])
     off = mean - state
-    off[:, :2] = 0.0
-    weighted = jacobian * weight[:, :, None]
-    normal = np.matmul(weighted.transpose(0, 2, 1), jacobian) + prior
-    gradient = np.matmul(weighted.transpose(0, 2, 1), residual[:, :, None])[:, :, 0] + off @ prior
-    cost = 0.5 * CAUCHY**2 * np.log1p((residual / CAUCHY) ** 2).sum(axis=1)
-    return normal, gradient, cost + 0.5 * np.einsum("si,ij,sj->s", off, prior, off)
+    off[:2] = 0.0
+    gradient = prior @ off
+    cost = 0.5 * np.dot(off, gradient)
+    normal, row = prior.copy(), np.empty(5)
+    normal[0, 0] += LEAST_INFORMATION
+    normal[1, 1] += LEAST_INFORMATION
+    for i in range(m):
+        residual = (value[i] - got.predicted[i]) / sigma[i]
+        loss = 1.0 + (residual / CAUCHY) ** 2
+        cost += 0.5 * CAUCHY**2 * np.log(loss)
+        for r in range(3):
+            row[r] = got.by_b[i, r] / sigma[i]
+        for r in range(2):
+            row[3 + r] = got.by_extra[i, r] / sigma[i]
+        for r in range(5):
+            pulled = row[r] / loss
+            gradient[r] += pulled * residual
+            for c in range(5):
+                normal[r, c] += pulled * row[c]
+    return normal, gradient, cost

@@ -4,6 +4,7 @@ import numpy as np
 
 from estimator.fusion.descent import descend
 from estimator.fusion.free import free_motion
+from estimator.fusion.modes import Sought, find_modes
 from estimator.fusion.rows import FIELDS
 from estimator.fusion.update import tally
 from estimator.graph.kernels import (
@@ -38,6 +39,7 @@ def warm_up() -> None:
     predict_bearing(place, place, one)
     wrap(one)
     weigh(one, one, one, *strided)
+    find_modes(Sought("range", place, one, one, 0.0, 1.0, np.zeros(2), np.eye(2)))
 
 
 def _warm_chain() -> None:

@@ -31,9 +31,9 @@ from estimator.smoothing.settle import keep_poses, settle
 from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.walks import STATES
 
-PERIOD_S = 6.0
-SOONEST_S = 3.0
-YOUNG = 0.03
+PERIOD_S = 8.0
+SOONEST_S = 5.0
+YOUNG = 0.06
 """A window is solved again when it has grown by this much of its length: what is young still bends."""
 BENT_M = 1.0
 CALM = 4.0
