@@ -32,7 +32,7 @@ from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.walks import STATES
 
 PERIOD_S = 8.0
-SOONEST_S = 5.0
+SOONEST_S = 3.0
 YOUNG = 0.06
 """A window is solved again when it has grown by this much of its length: what is young still bends."""
 BENT_M = 1.0
