@@ -15,7 +15,7 @@ COPY requirements.txt ./
 COPY --from=build /src/dist/*.whl ./
 RUN pip install --no-cache-dir --require-hashes --requirement requirements.txt \
     && pip install --no-cache-dir --no-deps ./*.whl \
-    && python -m estimator.graph.warm \
+    && python -m estimator.warm \
     && useradd --create-home firethread && mkdir /data && chown firethread /data
 USER firethread
 VOLUME /data

@@ -14,7 +14,7 @@ setup: .venv/.installed screen
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements-dev.txt
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
-	$(BIN)/python -m estimator.graph.warm
+	$(BIN)/python -m estimator.warm
 	touch $@
 
 frontend/node_modules/.installed: .venv/.installed frontend/package.json frontend/package-lock.json

@@ -23,7 +23,7 @@ from backend.tracking.fold import OtherState
 from backend.tracking.heads import Head
 from estimator.estimate import Relative
 from estimator.evidence import Advice, Evidence
-from estimator.graph.warm import warm_up
+from estimator.warm import warm_up
 
 KEPT = 8
 """Smoothed incidents that are kept: a reviewer goes back and forth between a few."""

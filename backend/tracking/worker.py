@@ -16,7 +16,7 @@ from backend.log.engine import make_engine, writing
 from backend.log.read import SqlLogReader
 from backend.tracking.follower import Follower
 from backend.tracking.heads import Head, heads
-from estimator.graph.warm import warm_up
+from estimator.warm import warm_up
 
 POLL_S = 0.5
 """The log is looked at so often even if no wake-up comes: the link may be down."""

@@ -1,10 +1,10 @@
 """The numbers of the default tracker: one set for every incident, from physics and published figures.
 
-Physics leaves most of them a span. Seven were chosen among what is plausible with recordings in view: the
+Physics leaves most of them a span. Some were chosen among what is plausible with recordings in view: the
 public sets plaza1, danis and hanyang, and the scenarios of `estimator.simulate`. Accuracy on these is
-therefore not accuracy on data never seen. The seven are `HEADING_WALK_RAD_PER_ROOT_M`, `SCALE_SIGMA`,
-`RANGE_SCALE_WIDE`, `UNCALIBRATED`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`, `NEAR_SIGMA_DB` and
-`FREE_WAY_MPS`. M marks what estimation.md reports as measured.
+therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M`, `SCALE_SIGMA`,
+`RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
+`FLOOR_SIGMA`, `NEAR_SIGMA_DB` and `FREE_WAY_MPS`. M marks what estimation.md reports as measured.
 """
 
 from math import radians

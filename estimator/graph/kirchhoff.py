@@ -145,19 +145,10 @@ class Kirchhoff:
             return
         gone = np.concatenate([np.arange(*self.rows(v).indices(self.size)) for v in variables])
         kept = np.setdiff1d(np.arange(self.size), gone)
-        matrix, vector = self.information, self.vector
-        coupling = matrix[np.ix_(gone, kept)]
-        block = matrix[np.ix_(gone, gone)]
-        try:
-            cholesky = factorise(block)
-        except ValueError:
-            cholesky = factorise(mended(block))
-        through = solve(cholesky, np.column_stack([coupling, vector[gone]]))
-        left = matrix[np.ix_(kept, kept)] - coupling.T @ through[:, :-1]
-        rest = vector[kept] - coupling.T @ through[:, -1]
+        left, rest = marginalised(self.information, self.vector, gone, kept)
         reference = self.reference[kept]
         self.size = n = len(kept)
-        self._matrix[:n, :n] = 0.5 * (left + left.T)
+        self._matrix[:n, :n] = left
         self._vector[:n], self._reference[:n] = rest, reference
         gone_set = set(variables)
         start = 0
@@ -219,3 +210,23 @@ class Kirchhoff:
     def covariance(self) -> Array:
         """Σ = L⁻¹ (eq. 5), n × n; the block of a node is its effective resistance to the base."""
         return inverse(self.factorise())
+
+
+def marginalised(matrix: Array, vector: Array, gone: Indices, kept: Indices) -> tuple[Array, Array]:
+    """Eq. 17: what a system says of the rows `kept` when those `gone` are summed out, exactly symmetric.
+
+    Args:
+        matrix: L, n × n.
+        vector: b, n.
+        gone: rows to be left out.
+        kept: rows to be kept, in the order in which they are wanted.
+    """
+    coupling = matrix[np.ix_(gone, kept)]
+    block = matrix[np.ix_(gone, gone)]
+    try:
+        cholesky = factorise(block)
+    except ValueError:
+        cholesky = factorise(mended(block))
+    through = solve(cholesky, np.column_stack([coupling, vector[gone]]))
+    left = matrix[np.ix_(kept, kept)] - coupling.T @ through[:, :-1]
+    return 0.5 * (left + left.T), vector[kept] - coupling.T @ through[:, -1]

@@ -3,12 +3,14 @@
 import numpy as np
 
 from estimator.fusion.state import FusionState
-from estimator.graph.dense import Array, Indices, factorise, mended, solve
-from estimator.graph.kirchhoff import Kirchhoff
+from estimator.graph.dense import Array, Indices
+from estimator.graph.kirchhoff import Kirchhoff, marginalised
 from estimator.graph.variable import Variable
-from estimator.smoothing.layout import Layout
+from estimator.smoothing.layout import Layout, technology_key
 from estimator.smoothing.solve import Solved
 from estimator.smoothing.walks import STATES
+
+NONE = np.zeros(0, dtype=np.intp)
 
 
 def settle(state: FusionState, layout: Layout, solved: Solved, matrix: Array) -> None:
@@ -39,29 +41,21 @@ def settle(state: FusionState, layout: Layout, solved: Solved, matrix: Array) ->
             gone.append(own)
     for variable in graph.starts:
         if variable.kind in ("range", "rssi"):
-            kind = variable.kind
-            name = variable.owner if kind == "range" else f"rssi {variable.owner}"
-            columns[variable] = layout.width + np.arange(2) + layout.technologies[(kind, state.source(name))]
+            columns[variable] = (
+                layout.width + np.arange(2) + layout.technologies[technology_key(state, variable)]
+            )
     order = [v for v in graph.starts if v in columns]
     if len(order) != len(graph.starts):
         raise ValueError("the window does not hold all that the filter holds")
     kept = np.concatenate([columns[v] for v in order])
-    left = matrix[np.ix_(kept, kept)]
-    if gone:
-        out = np.concatenate(gone)
-        block = matrix[np.ix_(out, out)]
-        try:
-            cholesky = factorise(block)
-        except ValueError:
-            cholesky = factorise(mended(block))
-        coupling = matrix[np.ix_(out, kept)]
-        left = left - coupling.T @ solve(cholesky, coupling)
+    nothing = np.zeros(len(matrix))
+    left, rest = marginalised(matrix, nothing, np.concatenate([*gone, NONE]), kept)
     reference = here[kept]
     if not np.isfinite(reference).all():
         raise ValueError("the window's solution is not finite")
     # Where the window has not come to rest, what is left of its gradient is dropped: it asks for a step
     # that Marquardt's damping has refused.
-    state.graph = Kirchhoff.of(order, 0.5 * (left + left.T), np.zeros(len(kept)), reference)
+    state.graph = Kirchhoff.of(order, left, rest, reference)
 
 
 def keep_poses(state: FusionState, layout: Layout, x: Array) -> None:
