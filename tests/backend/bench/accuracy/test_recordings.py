@@ -8,6 +8,7 @@ import pytest
 from backend.bench.accuracy.cases import Case, case_of
 from backend.bench.accuracy.entrants import Mode, entrants
 from backend.bench.accuracy.judge import judge
+from estimator.evaluate import Errors
 
 WALKS = ["uwb_outdoor_hanyang:LOS_A1", "uwb_outdoor_hanyang:NLOS_A1"]
 
@@ -17,18 +18,31 @@ def recording(data: Path, name: str) -> Case:
     return case_of(name, 0, data)
 
 
-def rmse_m(case: Case, entrant: str, mode: Mode) -> float:
-    """Horizontal error, anchored at the recording's first pose or its anchors."""
+def errors_of(case: Case, entrant: str, mode: Mode) -> Errors:
+    """Horizontal errors, anchored at the recording's first pose or its anchors."""
     found = next(e for e in entrants() if (e.name, e.mode) == (entrant, mode))
-    return judge(found.track(case.reports), case.truth, found.heights).errors.rmse_m
+    return judge(found.track(case.reports), case.truth, found.heights).errors
+
+
+def rmse_m(case: Case, entrant: str, mode: Mode) -> float:
+    return errors_of(case, entrant, mode).rmse_m
 
 
 def test_plaza1_online_with_unknown_beacons_stays_within_a_metre(shared_data: Path) -> None:
-    assert rmse_m(recording(shared_data, "plaza1"), "kirchhoff", "online") <= 1.0
+    """The goal for the aligned error, 0.30 m, is not reached: it is larger until the scale is known."""
+    found = errors_of(recording(shared_data, "plaza1"), "kirchhoff", "online")
+    assert found.rmse_m <= 1.0
+    assert found.aligned_rmse_m <= 0.40
 
 
-def test_plaza1_smoothed_stays_within_90_cm(shared_data: Path) -> None:
-    assert rmse_m(recording(shared_data, "plaza1"), "kirchhoff", "smoothed") <= 0.9
+def test_plaza1_smoothed_stays_within_90_cm_and_places_all_its_beacons(shared_data: Path) -> None:
+    case = recording(shared_data, "plaza1")
+    smoothed = next(e for e in entrants() if (e.name, e.mode) == ("kirchhoff", "smoothed"))
+    tracks = smoothed.track(case.reports)
+    assert {name for name in tracks if name.startswith("beacon")} == {f"beacon-{n}" for n in (0, 1, 5, 6)}
+    found = judge(tracks, case.truth, smoothed.heights).errors
+    assert found.rmse_m <= 0.9
+    assert found.aligned_rmse_m <= 0.25
 
 
 @pytest.mark.parametrize("walk", WALKS)
