@@ -7,16 +7,10 @@ from estimator.fusion.free import free_motion
 from estimator.fusion.modes import Sought, find_modes
 from estimator.fusion.rows import FIELDS
 from estimator.fusion.update import tally
-from estimator.graph.kernels import (
-    add_motion,
-    eliminate,
-    scatter_rows,
-    selected_inverse,
-    strongest,
-    substitute,
-)
+from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.robust import weigh
+from estimator.graph.scatter import add_motion, couple, localise, scatter_rows
 from estimator.graph.variable import Variable
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.displacement import move
@@ -49,7 +43,9 @@ def _warm_chain() -> None:
     wide, corner, rest = np.zeros((k, n, s + 1)), np.ones((s, s)), np.zeros(s)
     slab, columns = np.zeros(1, dtype=np.int64), np.zeros((1, ANY), dtype=np.int64)
     one, x = np.ones(1), np.zeros(n)
-    scatter_rows(slab, columns, np.zeros((1, ANY)), one, one, diagonal, wide, corner, rest)
+    couple(columns, n, n, np.zeros(1, dtype=np.int64), np.zeros((1, s), dtype=np.bool_))
+    localise(columns, n, n, slab, np.zeros((2, n + s), dtype=np.int64), slab.copy())
+    scatter_rows(slab, slab, slab, columns, np.zeros((1, ANY)), one, one, diagonal, wide, corner, rest)
     between, states = np.zeros((1, 12)), np.zeros((k, n))
     motion = unit_motion(between, one, states)
     misfit(motion)
@@ -58,7 +54,7 @@ def _warm_chain() -> None:
     add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)
     eliminate(0, k, diagonal, link, wide)
     substitute(diagonal, link, wide, rest, np.zeros((k, n)))
-    selected_inverse(diagonal, link, wide, corner, np.zeros((k, n, n)), np.zeros((k - 1, n, n)))
+    selected_inverse(diagonal, link, wide, corner, np.zeros((k, 1, n, n)), np.zeros((k - 1, 1, n, n)))
     strongest(one, one, one, 1.0, 1)
     place = np.zeros((1, 3))
     end = Table(slab, np.zeros((1, STATES), dtype=np.int64), place, place, place, one)

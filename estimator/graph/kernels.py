@@ -10,107 +10,6 @@ Integers = NDArray[np.int64]
 
 
 @njit(cache=True)
-def scatter_rows(
-    slab: Integers,
-    columns: Integers,
-    jacobian: Array,
-    information: Array,
-    residual: Array,
-    diagonal: Array,
-    wide: Array,
-    corner: Array,
-    corner_gradient: Array,
-) -> None:
-    """Add HᵀP⁻¹H and HᵀP⁻¹r of m readings to a chain.
-
-    Args:
-        slab: keyframe that each reading belongs to, m; any where it touches none.
-        columns: which numbers it depends on, m × c: those of the keyframe first (below its width), those of
-            the border after them; −1: unused.
-        jacobian: derivatives, m × c.
-        information: P⁻¹, m.
-        residual: z − h(x), m.
-        diagonal: k × n × n, changed.
-        wide: border and gradient of each keyframe, k × n × (s + 1), changed.
-        corner: s × s, changed.
-        corner_gradient: s, changed.
-    """
-    width, lasting = diagonal.shape[1], len(corner_gradient)
-    m, most = columns.shape
-    column, slope = np.empty(most, dtype=np.int64), np.empty(most)
-    for r in range(m):
-        used = 0
-        for a in range(most):
-            if columns[r, a] >= 0 and jacobian[r, a] != 0.0:
-                column[used], slope[used] = columns[r, a], jacobian[r, a]
-                used += 1
-        square, beside = diagonal[slab[r]], wide[slab[r]]
-        for a in range(used):
-            ca = column[a]
-            pulled = slope[a] * information[r]
-            if ca < width:
-                beside[ca, lasting] += pulled * residual[r]
-                for b in range(used):
-                    cb = column[b]
-                    if cb < width:
-                        square[ca, cb] += pulled * slope[b]
-                    else:
-                        beside[ca, cb - width] += pulled * slope[b]
-            else:
-                corner_gradient[ca - width] += pulled * residual[r]
-                for b in range(used):
-                    if column[b] >= width:
-                        corner[ca - width, column[b] - width] += pulled * slope[b]
-
-
-@njit(cache=True)
-def add_motion(
-    block: int,
-    first: int,
-    transition: Array,
-    information: Array,
-    residual: Array,
-    diagonal: Array,
-    link: Array,
-    wide: Array,
-) -> None:
-    """Add the motion of one node to a chain: x' − F x = r with information Q⁻¹, step after step.
-
-    Args:
-        block: which of the keyframe's blocks of b numbers is the node's.
-        first: keyframe that its first step leaves from.
-        transition: F, m × b × b.
-        information: Q⁻¹, m × b × b.
-        residual: r, m × b.
-        diagonal: k × n × n, changed.
-        link: (k − 1) × blocks × b × b, changed.
-        wide: k × n × (s + 1), its last column changed.
-    """
-    m, size = residual.shape
-    at, last = block * size, wide.shape[2] - 1
-    pulled = np.empty((size, size))
-    for step in range(m):
-        before, after = first + step, first + step + 1
-        known, way = information[step], transition[step]
-        for r in range(size):
-            for c in range(size):
-                total = 0.0
-                for i in range(size):
-                    total += way[i, r] * known[i, c]
-                pulled[r, c] = total
-        for r in range(size):
-            for c in range(size):
-                total = 0.0
-                for i in range(size):
-                    total += pulled[r, i] * way[i, c]
-                diagonal[before, at + r, at + c] += total
-                diagonal[after, at + r, at + c] += known[r, c]
-                link[before, block, c, r] -= pulled[r, c]
-                wide[before, at + r, last] += pulled[r, c] * residual[step, c]
-                wide[after, at + r, last] -= known[r, c] * residual[step, c]
-
-
-@njit(cache=True)
 def half_inverse(matrix: Array) -> bool:
     """C⁻¹ of A = C Cᵀ in the place of A, n × n, lower triangle: A⁻¹ = C⁻ᵀ C⁻¹.
 
@@ -212,9 +111,19 @@ def substitute(diagonal: Array, link: Array, wide: Array, fixed: Array, steps: A
 def selected_inverse(
     diagonal: Array, link: Array, wide: Array, border_covariance: Array, found: Array, ahead: Array
 ) -> None:
-    """After `eliminate`: covariance of each keyframe (`found`, k × n × n) and with the next (`ahead`)."""
+    """After `eliminate`: covariance of each block at each keyframe, and with itself at the next one.
+
+    Args:
+        diagonal: as `eliminate` leaves it, k × n × n.
+        link: E, as `eliminate` takes it.
+        wide: as `eliminate` leaves it, k × n × (s + 1).
+        border_covariance: s × s.
+        found: k × blocks × b × b, changed.
+        ahead: rows of a keyframe, columns of the next, (k − 1) × blocks × b × b, changed.
+    """
     length, width, across = wide.shape
-    next_border = np.zeros((width, across - 1))
+    count, size = found.shape[1:3]
+    next_border, next_covariance = np.zeros((width, across - 1)), np.zeros((width, width))
     to_next, turned = np.empty((width, width)), np.zeros((width, width))
     for j in range(length - 1, -1, -1):
         back = diagonal[j].T
@@ -225,12 +134,17 @@ def selected_inverse(
         if j < length - 1:
             turn_link(link[j], turned)
             np.dot(-covariance, turned, to_next)
-            with_next = np.dot(to_next, found[j + 1]) + np.dot(to_border, next_border.T)
+            with_next = np.dot(to_next, next_covariance) + np.dot(to_border, next_border.T)
             with_border += np.dot(to_next, next_border)
             covariance += np.dot(with_next, to_next.T)
-            ahead[j] = with_next
+            for block in range(count):
+                own = slice(block * size, (block + 1) * size)
+                ahead[j, block] = with_next[own, own]
         covariance += np.dot(with_border, to_border.T)
-        found[j] = 0.5 * (covariance + covariance.T)
+        next_covariance = 0.5 * (covariance + covariance.T)
+        for block in range(count):
+            own = slice(block * size, (block + 1) * size)
+            found[j, block] = next_covariance[own, own]
         next_border = with_border
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from estimator.fusion.prior import Key, Prior
 from estimator.graph.dense import Array, Indices
+from estimator.graph.kernels import Integers
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.walks import STATES
@@ -19,7 +20,7 @@ class Carried:
 
     def __init__(self, layout: Layout, prior: Prior) -> None:
         self._prior = prior
-        self._size = layout.length * layout.width
+        self._size, self._width = layout.length * layout.width, layout.width
         columns = [_columns(layout, key) for key in prior.keys]
         self._at = np.concatenate(columns or [np.zeros(0, dtype=np.intp)]).astype(np.intp)
         self._kept = np.flatnonzero(self._at >= 0)
@@ -36,19 +37,28 @@ class Carried:
         moved = self._moved(x)
         return float(0.5 * moved @ (self._prior.matrix @ moved) - self._prior.vector @ moved)
 
+    @property
+    def coupled(self) -> Integers:
+        """Pairs of columns that it ties together, m × 2, as `groups.Groups` takes them."""
+        at = self._at[self._kept]
+        tied = np.argwhere(self._prior.matrix[np.ix_(self._kept, self._kept)] != 0.0)
+        return np.where(at < self._size, at, at - self._size + self._width)[tied].astype(np.int64)
+
     def add(self, chain: Chain, x: Array) -> None:
         """Add it to the normal equations at an estimate, flat."""
-        kept = self._kept
-        at = self._at[kept]
-        matrix = self._prior.matrix[np.ix_(kept, kept)]
-        vector = (self._prior.vector - self._prior.matrix @ self._moved(x))[kept]
-        moving = at < self._size
-        own, rest = at[moving], at[~moving] - self._size
-        chain.diagonal[0][np.ix_(own, own)] += matrix[np.ix_(moving, moving)]
-        chain.border[0][np.ix_(own, rest)] += matrix[np.ix_(moving, ~moving)]
-        chain.corner[np.ix_(rest, rest)] += matrix[np.ix_(~moving, ~moving)]
-        chain.gradient[0][own] += vector[moving]
-        chain.corner_gradient[rest] += vector[~moving]
+        matrix, at = self._prior.matrix, self._at
+        vector = self._prior.vector - matrix @ self._moved(x)
+        for strand in chain.strands:
+            group = strand.group
+            moving, own = _common(at, group.columns)
+            lasting, rest = _common(at - self._size, group.lasting)
+            if len(group.walks):
+                strand.diagonal[0][np.ix_(own, own)] += matrix[np.ix_(moving, moving)]
+                strand.border[0][np.ix_(own, rest)] += matrix[np.ix_(moving, lasting)]
+                strand.gradient[0][own] += vector[moving]
+            else:
+                strand.corner[np.ix_(rest, rest)] += matrix[np.ix_(lasting, lasting)]
+                strand.corner_gradient[rest] += vector[lasting]
 
     def _moved(self, x: Array) -> Array:
         moved = np.zeros(len(self._at))
@@ -68,3 +78,10 @@ def _columns(layout: Layout, key: Key) -> Indices:
         return np.full(3, -1) if start is None else size + np.arange(start, start + 3)
     start = layout.technologies.get(key)
     return np.full(2, -1) if start is None else size + np.arange(start, start + 2)
+
+
+def _common(at: Indices, columns: Indices) -> tuple[Indices, Indices]:
+    """Where each of some columns stands among others, and which of those it is."""
+    place = np.minimum(np.searchsorted(columns, at), max(len(columns) - 1, 0))
+    among = np.flatnonzero(columns[place] == at) if len(columns) else np.zeros(0, dtype=np.intp)
+    return among, place[among]

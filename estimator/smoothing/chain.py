@@ -5,16 +5,20 @@
     |     E1  D2  …    B2 |        border, s numbers: static nodes, technologies
     | B0ᵀ B1ᵀ B2ᵀ …    C  |
 
-Elimination along the chain is operation 3 of paper A (eq. 17), keyframe after keyframe; what stays at its
-end is the Kirchhoff matrix of the border. Cost grows with the length of the chain, not with its cube.
+Walks that no direct reading couples meet in the border only. Each group of them is eliminated by itself, as
+narrow as it is (`Strand`); C is the sum of what the groups say of the border.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from estimator.graph.dense import Array, factorise, inverse, mended, solve
-from estimator.graph.kernels import eliminate, selected_inverse, substitute
+from estimator.graph.dense import Array, Indices, factorise, inverse, mended, solve
+from estimator.graph.kernels import Integers
+from estimator.graph.scatter import scatter_rows
+from estimator.smoothing.groups import Group, Placed
+from estimator.smoothing.strand import Strand
 
 
 class Remainder(NamedTuple):
@@ -33,42 +37,73 @@ class Chain:
     """Normal matrix and gradient of a chain, to be filled and then solved once.
 
     Attributes:
-        diagonal: D, k × n × n.
-        link: E, keyframe j + 1 by keyframe j, (k − 1) × blocks × b × b: a node's next step depends on no
-            other's, so there are only blocks along its diagonal.
-        wide: B and the gradient of the keyframes beside it, k × n × (s + 1).
-        corner: C, s × s.
-        corner_gradient: of the border, s.
-        steps: of the keyframes, k × n, after `solve`.
-        fixed: of the border, s, after `solve`.
+        strands: the chain of each group; of the last one there is only the border.
+        width: n.
+        lasting: s.
     """
 
-    def __init__(self, length: int, width: int, border: int, blocks: int) -> None:
-        size = width // max(blocks, 1)
-        self.diagonal: Array = np.zeros((length, width, width))
-        self.link: Array = np.zeros((max(length - 1, 0), blocks, size, size))
-        self.wide: Array = np.zeros((length, width, border + 1))
-        self.corner: Array = np.zeros((border, border))
-        self.corner_gradient: Array = np.zeros(border)
-        self._covariance: Array = np.zeros((border, border))
-        self._done = 0
+    def __init__(self, length: int, groups: Sequence[Group]) -> None:
+        self.strands = [Strand(length, group) for group in groups]
+        self.width = sum(len(group.columns) for group in groups)
+        self.lasting = len(groups[-1].lasting)
+        self._length = length
+        self._covariance: Array = np.zeros((self.lasting, self.lasting))
 
-    @property
-    def border(self) -> Array:
-        """B, k × n × s."""
-        return self.wide[:, :, :-1]
+    def add(
+        self,
+        placed: Placed,
+        parts: list[Indices],
+        row: Integers,
+        jacobian: Array,
+        information: Array,
+        residual: Array,
+    ) -> None:
+        """Add m rows.
 
-    @property
-    def gradient(self) -> Array:
-        """Of the keyframes, k × n."""
-        return self.wide[:, :, -1]
+        Args:
+            placed: the readings.
+            parts: positions of each group's rows.
+            row: the reading that each row belongs to, m.
+            jacobian: derivatives, m × c.
+            information: P⁻¹, m.
+            residual: z − h(x), m.
+        """
+        for strand, chosen in zip(self.strands, parts, strict=True):
+            scatter_rows(
+                chosen,
+                row,
+                placed.slab,
+                placed.columns,
+                jacobian,
+                information,
+                residual,
+                strand.diagonal,
+                strand.wide,
+                strand.corner,
+                strand.corner_gradient,
+            )
 
     def damp(self, damping: float) -> None:
         """Raise the diagonal by a share of itself (Marquardt): a shorter step, and more along the slope."""
         if damping > 0.0:
-            numbers, rest = range(self.diagonal.shape[1]), range(len(self.corner))
-            self.diagonal[:, numbers, numbers] *= 1.0 + damping
-            self.corner[rest, rest] *= 1.0 + damping
+            for strand in self.strands:
+                strand.damp(damping)
+
+    def slope(self) -> Array:
+        """The gradient, flat: keyframes, then the border."""
+        keyframes = np.zeros((self._length, self.width))
+        for strand in self.strands:
+            keyframes[:, strand.group.columns] = strand.gradient
+        return np.concatenate([keyframes.ravel(), self._corner()[1]])
+
+    def _corner(self) -> tuple[Array, Array]:
+        """C, s × s, and the border's gradient, s."""
+        corner, gradient = np.zeros((self.lasting, self.lasting)), np.zeros(self.lasting)
+        for strand in self.strands:
+            lasting = strand.group.lasting
+            corner[np.ix_(lasting, lasting)] += strand.corner
+            gradient[lasting] += strand.corner_gradient
+        return corner, gradient
 
     def remainder(self, keyframe: int) -> Remainder:
         """Eliminate what lies before a keyframe: what is left of it on that keyframe and the border.
@@ -79,36 +114,17 @@ class Chain:
         Raises:
             ValueError: the matrix is not finite, or far from positive definite.
         """
-        self._eliminate(keyframe)
-        width = self.diagonal.shape[1]
-        size = width + len(self.corner)
-        matrix = np.zeros((size, size))
-        matrix[:width, :width] = self.diagonal[keyframe]
-        matrix[:width, width:] = self.border[keyframe]
-        matrix[width:, :width] = self.border[keyframe].T
-        matrix[width:, width:] = self.corner
-        return Remainder(
-            0.5 * (matrix + matrix.T), np.concatenate([self.gradient[keyframe], self.corner_gradient])
-        )
-
-    def _eliminate(self, until: int, mend: bool = True) -> None:
-        if until <= self._done:
-            return
-        if not np.isfinite(self.diagonal).all():
-            raise ValueError("the normal equations of the incident are not finite")
-        at, mended_at = self._done, -1
-        while at < until:
-            at = eliminate(at, until, self.diagonal, self.link, self.wide)
-            if at < until:
-                if not mend or at == mended_at or not np.isfinite(self.diagonal[at]).all():
-                    raise ValueError("the normal equations of the incident are not positive definite")
-                self.diagonal[at] = mended(self.diagonal[at])
-                mended_at = at
-        wide = self.wide[self._done : until].reshape(-1, self.wide.shape[2])
-        taken = wide.T @ wide
-        self.corner -= taken[:-1, :-1]
-        self.corner_gradient -= taken[:-1, -1]
-        self._done = until
+        size = self.width + self.lasting
+        matrix, vector = np.zeros((size, size)), np.zeros(size)
+        for strand in self.strands:
+            strand.eliminate(keyframe)
+            own, rest = strand.group.columns, self.width + strand.group.lasting
+            matrix[np.ix_(own, own)] = strand.diagonal[keyframe]
+            matrix[np.ix_(own, rest)] = strand.border[keyframe]
+            matrix[np.ix_(rest, own)] = strand.border[keyframe].T
+            vector[own] = strand.gradient[keyframe]
+        matrix[self.width :, self.width :], vector[self.width :] = self._corner()
+        return Remainder(0.5 * (matrix + matrix.T), vector)
 
     def solve(self, mend: bool = True) -> tuple[Array, Array]:
         """The step of all keyframes, k × n, and of the border, s; the arrays are used up.
@@ -119,19 +135,21 @@ class Chain:
         Raises:
             ValueError: the matrix is not finite, or far from positive definite.
         """
-        length, width, _ = self.diagonal.shape
-        self._eliminate(length, mend)
+        for strand in self.strands:
+            strand.eliminate(self._length, mend)
+        corner, gradient = self._corner()
         try:
-            cholesky = factorise(self.corner)
+            cholesky = factorise(corner)
         except ValueError:
             if not mend:
                 raise
-            cholesky = factorise(mended(self.corner))
+            cholesky = factorise(mended(corner))
         self._covariance = inverse(cholesky)
-        self.fixed = solve(cholesky, self.corner_gradient)
-        self.steps: Array = np.zeros((length, width))
-        substitute(self.diagonal, self.link, self.wide, self.fixed, self.steps)
-        return self.steps, self.fixed
+        fixed = solve(cholesky, gradient)
+        steps = np.zeros((self._length, self.width))
+        for strand in self.strands:
+            steps[:, strand.group.columns] = strand.substitute(fixed[strand.group.lasting])
+        return steps, fixed
 
     def response(self, right: Array, corner: Array) -> tuple[Array, Array]:
         """L⁻¹ of several right sides at once, after `solve`: how everything moves where a current is put in.
@@ -140,31 +158,32 @@ class Chain:
             right: of the keyframes, k × n × c.
             corner: of the border, s × c.
         """
-        length, width, count = right.shape
-        blocks, size = self.link.shape[1:3]
-        y, rest = right.copy(), corner.copy()
-        for j in range(length):
-            y[j] = self.diagonal[j] @ y[j]
-            rest -= self.border[j].T @ y[j]
-            if j < length - 1:
-                back = (self.diagonal[j].T @ y[j]).reshape(blocks, size, count)
-                y[j + 1] -= (self.link[j] @ back).reshape(width, count)
+        carried, rest = [], corner.copy()
+        for strand in self.strands:
+            y, own = right[:, strand.group.columns], np.zeros((len(strand.group.lasting), corner.shape[1]))
+            strand.forth(y, own)
+            rest[strand.group.lasting] += own
+            carried.append(y)
         fixed: Array = self._covariance @ rest
-        for j in range(length - 1, -1, -1):
-            ahead = y[j] - self.border[j] @ fixed
-            if j < length - 1:
-                after = self.link[j].transpose(0, 2, 1) @ y[j + 1].reshape(blocks, size, count)
-                ahead -= self.diagonal[j] @ after.reshape(width, count)
-            y[j] = self.diagonal[j].T @ ahead
-        return y, fixed
+        found = np.zeros(right.shape)
+        for strand, y in zip(self.strands, carried, strict=True):
+            strand.back(y, fixed[strand.group.lasting])
+            found[:, strand.group.columns] = y
+        return found, fixed
 
     def covariances(self) -> tuple[Array, Array, Array]:
-        """After `solve`: covariance of each keyframe, k × n × n, with the next one, and of the border, s × s.
+        """After `solve`: covariances of the walks and of the border.
 
-        The selected inverse, from the chain's end back to its start: only what the next keyframe and the
-        border need is ever formed.
+        Returns:
+            Of each walk at each keyframe, k × walks × b × b; of each with itself at the next keyframe,
+            (k − 1) × walks × b × b; of the border, s × s.
         """
-        length, width, _ = self.diagonal.shape
-        found, ahead = np.zeros((length, width, width)), np.zeros((max(length - 1, 0), width, width))
-        selected_inverse(self.diagonal, self.link, self.wide, self._covariance, found, ahead)
+        walks = sum(len(strand.group.walks) for strand in self.strands)
+        size = self.width // max(walks, 1)
+        found = np.zeros((self._length, walks, size, size))
+        ahead = np.zeros((max(self._length - 1, 0), walks, size, size))
+        for strand in self.strands:
+            own, lasting = strand.group.walks, strand.group.lasting
+            if len(own):
+                found[:, own], ahead[:, own] = strand.covariances(self._covariance[np.ix_(lasting, lasting)])
         return found, ahead, self._covariance

@@ -13,7 +13,6 @@ from estimator.fusion.calibration import narrow_sigma, scale_sigma, uncalibrated
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.solve import Problem, Solved
-from estimator.smoothing.walks import STATES
 
 SPREAD = 1.0
 """Units differ from the usual one by this much in the logarithm of a variance."""
@@ -33,7 +32,7 @@ def learn(state: FusionState, problem: Problem, solved: Solved, step: float = ST
         step: farthest that the logarithm of a variance moves at once.
 
     Returns:
-        Covariance of each keyframe, k × n × n.
+        Covariance of each walk at each keyframe, k × walks × 6 × 6.
     """
     solved.chain.solve()
     found, ahead, border = solved.chain.covariances()
@@ -51,18 +50,17 @@ def learn_walks(
         state: its nodes take the factors.
         problem: of the window.
         solved: its solution.
-        found: covariance of each keyframe, k × n × n.
-        ahead: covariance of each keyframe with the next, (k − 1) × n × n.
+        found: covariance of each walk at each keyframe, k × walks × 6 × 6.
+        ahead: of each with itself at the next keyframe, (k − 1) × walks × 6 × 6.
         most: farthest that the logarithm of a variance moves.
     """
     for i, walk in enumerate(problem.layout.walks):
         motion = solved.motions[i]
         if walk.way is None or not len(motion.noise):
             continue
-        own = slice(STATES * i, STATES * (i + 1))
         now = slice(walk.first, walk.last)
-        before, after = found[now, own, own], found[walk.first + 1 : walk.last + 1, own, own]
-        carried = np.matmul(motion.transition, ahead[now, own, own])
+        before, after = found[now, i], found[walk.first + 1 : walk.last + 1, i]
+        carried = np.matmul(motion.transition, ahead[now, i])
         transition = motion.transition
         unsure = after + np.matmul(np.matmul(transition, before), transition.transpose(0, 2, 1))
         unsure -= carried + carried.transpose(0, 2, 1)

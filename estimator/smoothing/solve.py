@@ -7,10 +7,11 @@ import numpy as np
 from estimator.fusion.ledger import RSSI
 from estimator.fusion.prior import Prior
 from estimator.graph.dense import Array
-from estimator.graph.kernels import add_motion, scatter_rows
 from estimator.graph.robust import Weighted, mixture_cost, weigh
+from estimator.graph.scatter import add_motion
 from estimator.smoothing.carried import Carried
 from estimator.smoothing.chain import Chain
+from estimator.smoothing.groups import Groups
 from estimator.smoothing.layout import Layout, Walk
 from estimator.smoothing.priors import own_priors
 from estimator.smoothing.rows import Linearised, Rows
@@ -74,6 +75,16 @@ class Problem:
         self._at, self._mean, self._information = own_priors(layout, known)
         self._ways = [self._way(i, walk) for i, walk in enumerate(layout.walks)]
         self._carried = None if prior is None else Carried(layout, prior)
+        coupled = [rows.columns] if self._carried is None else [rows.columns, self._carried.coupled]
+        self._groups = Groups(layout.width, layout.border, coupled)
+        self._every = np.arange(len(rows.slab))
+        self._placed = self._groups.placed(rows.slab, rows.columns)
+        self._parts = self._groups.split(self._placed.group)
+        size, width = layout.length * layout.width, max(layout.width, 1)
+        slab = np.where(self._at < size, self._at // width, 0)
+        columns = np.where(self._at < size, self._at % width, self._at - size + layout.width)
+        self._known = self._groups.placed(slab, columns[:, None])
+        self._known_parts = self._groups.split(self._known.group)
 
     def _way(self, index: int, walk: Walk) -> tuple[Array, Array | Free]:
         """Times between a walk's keyframes, and what lies between them wherever they are."""
@@ -144,51 +155,36 @@ class Problem:
         """
         layout, rows = self.layout, self.rows
         length = layout.length if until is None else until + 1
-        width = layout.width
-        chain = Chain(length, width, layout.border, len(layout.walks))
-        size = layout.length * width
+        chain = Chain(length, self._groups.each)
         for i, (walk, motion) in enumerate(zip(layout.walks, motions, strict=True)):
-            own, count = slice(STATES * i, STATES * (i + 1)), max(min(walk.last, length - 1) - walk.first, 0)
-            chain.diagonal[: walk.first, own, own] = np.eye(STATES)
-            chain.diagonal[walk.last + 1 :, own, own] = np.eye(STATES)
+            group, block = self._groups.home(i)
+            strand = chain.strands[group]
+            own = slice(STATES * block, STATES * (block + 1))
+            count = max(min(walk.last, length - 1) - walk.first, 0)
+            strand.diagonal[: walk.first, own, own] = np.eye(STATES)
+            strand.diagonal[walk.last + 1 :, own, own] = np.eye(STATES)
             add_motion(
-                i,
+                block,
                 walk.first,
                 motion.transition[:count],
                 motion.information[:count],
                 motion.residual[:count],
-                chain.diagonal,
-                chain.link,
-                chain.wide,
+                strand.diagonal,
+                strand.link,
+                strand.wide,
             )
-        moving = self._at < size
-        at, pull = self._at[moving], self._information * (self._mean - x[self._at])
-        if width:
-            slab, column = at // width, at % width
-            inside = slab < length
-            slab, column = slab[inside], column[inside]
-            chain.diagonal[slab, column, column] += self._information[moving][inside]
-            chain.gradient[slab, column] += pull[moving][inside]
-        rest = self._at[~moving] - size
-        chain.corner[rest, rest] += self._information[~moving]
-        chain.corner_gradient[rest] += pull[~moving]
         if self._carried is not None:
             self._carried.add(chain, x)
-        information, slabs = weighted.information, rows.slab
+        placed, information = self._placed, weighted.information
+        known, certain = self._known, self._information
         if until is not None:
             information = np.where(rows.t < layout.grid[until], information, 0.0)
-            slabs = np.minimum(slabs, until)
-        scatter_rows(
-            slabs,
-            rows.columns,
-            linear.jacobian,
-            information,
-            weighted.residual,
-            chain.diagonal,
-            chain.wide,
-            chain.corner,
-            chain.corner_gradient,
-        )
+            certain = np.where(known.slab <= until, certain, 0.0)
+            placed = placed._replace(slab=np.minimum(placed.slab, until))
+            known = known._replace(slab=np.minimum(known.slab, until))
+        ones, off = np.ones((len(certain), 1)), self._mean - x[self._at]
+        chain.add(known, self._known_parts, np.arange(len(certain)), ones, certain, off)
+        chain.add(placed, self._parts, self._every, linear.jacobian, information, weighted.residual)
         return chain
 
     def _step(
@@ -209,7 +205,7 @@ class Problem:
             chain = self.assemble(x, linear, weighted, motions)
             self._bend(chain, x, weighted, signed)
             chain.damp(damping)
-            slope = np.concatenate([chain.gradient.ravel(), chain.corner_gradient])
+            slope = chain.slope()
             try:
                 steps, fixed = chain.solve(mend=not signed)
             except ValueError:
@@ -222,19 +218,9 @@ class Problem:
 
     def _bend(self, chain: Chain, x: Array, weighted: Weighted, signed: bool) -> None:
         """Add the rows' own curvature to the normal equations: for the step, not for what is known."""
-        rows = self.rows
-        pair, jacobian, information = rows.bends(x, weighted.information, weighted.residual, signed)
-        scatter_rows(
-            rows.slab[pair],
-            rows.columns[pair],
-            jacobian,
-            information,
-            np.zeros(len(pair)),
-            chain.diagonal,
-            chain.wide,
-            chain.corner,
-            chain.corner_gradient,
-        )
+        pair, jacobian, information = self.rows.bends(x, weighted.information, weighted.residual, signed)
+        parts = self._groups.split(self._placed.group[pair])
+        chain.add(self._placed, parts, pair, jacobian, information, np.zeros(len(pair)))
 
     def solve(
         self, x: Array, slacks_m: tuple[float, ...] = (), iterations: int = 20, resting: float = RESTING

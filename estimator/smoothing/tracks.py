@@ -23,8 +23,8 @@ def tracks(
     Args:
         layout: of the window.
         x: its estimate, flat.
-        keyframes: covariance of each keyframe, k × n × n.
-        ahead: covariance of each keyframe with the next, (k − 1) × n × n.
+        keyframes: covariance of each walk at each keyframe, k × walks × 6 × 6.
+        ahead: of each with itself at the next keyframe, (k − 1) × walks × 6 × 6.
         border: covariance of the border, s × s.
         lifetimes: first and last epoch of each node's readings (s).
     """
@@ -85,10 +85,10 @@ def _walked(
     places += np.where((after > at)[:, None], share[:, None] * (states[after, :3] - led_to), 0.0)
     part = share[:, None, None]
     keyframes, ahead = covariances
-    position = keyframes[:, own, own][:, :3, :3]
+    position = keyframes[:, index, :3, :3]
     both = np.zeros_like(position[at])
     between = after > at
-    both[between] = ahead[at[between]][:, own, own][:, :3, :3]
+    both[between] = ahead[at[between], index, :3, :3]
     apart = position[at] + position[after] - both - both.transpose(0, 2, 1)
     apart[~between] = 0.0
     covariance = (1.0 - part) * position[at] + part * position[after] - part * (1.0 - part) * apart

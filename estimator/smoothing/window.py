@@ -175,6 +175,6 @@ def _judge_turns(state: FusionState, layout: Layout, found: Array) -> None:
     """A unit whose heading has been found is not tried all round any more."""
     for i, walk in enumerate(layout.walks):
         node = state.nodes[walk.node.node]
-        sigma = float(np.sqrt(max(found[walk.last, STATES * i + 3, STATES * i + 3], 0.0)))
+        sigma = float(np.sqrt(max(found[walk.last, i, 3, 3], 0.0)))
         if node.turned and sigma < FOUND_RAD:
             state.nodes[node.node] = replace(node, turned=False)

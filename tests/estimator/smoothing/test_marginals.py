@@ -1,6 +1,7 @@
 """What is eliminated leaves what it knew behind: marginals of chains and of windows against the whole."""
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -13,34 +14,66 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.position import Position
 from estimator.smoothing.chain import Chain
+from estimator.smoothing.groups import Group, Groups
 from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.walks import STATES
 from tests.estimator.smoothing.windows import at_rest, dense, fused, problem_of
 from tests.estimator.walks import two_responders
 
 NO_OUTLIERS = 1e-200
-SHAPES = [(2, 3, 2), (6, 4, 3), (60, 6, 5), (5, 3, 0)]
 
 
-def random_chain(length: int, width: int, border: int, seed: int) -> Chain:
+class Shape(NamedTuple):
+    """Of a chain: keyframes, numbers of a walk, of the border, and each group's walks and border columns."""
+
+    length: int
+    size: int
+    border: int
+    groups: tuple[tuple[Sequence[int], Sequence[int]], ...]
+
+
+def alone(length: int, width: int, border: int) -> Shape:
+    """One walk."""
+    return Shape(length, width, border, (((0,), range(border)),))
+
+
+APART = (((0, 3), (0, 1, 4)), ((1,), (1, 2, 4)), ((2,), ()))
+SHAPES = [alone(2, 3, 2), alone(6, 4, 3), alone(60, 6, 5), alone(5, 3, 0), Shape(9, 3, 6, APART)]
+
+
+def groups_of(shape: Shape) -> list[Group]:
+    """Its groups; the last one has no walks."""
+    found = []
+    for walks, lasting in (*shape.groups, ((), range(shape.border))):
+        own = np.array(walks, dtype=np.intp)
+        columns = (shape.size * own[:, None] + np.arange(shape.size)).ravel()
+        found.append(Group(own, columns, np.array(lasting, dtype=np.intp)))
+    return found
+
+
+def random_chain(shape: Shape) -> Chain:
     """A chain with well-conditioned random contents."""
-    chance = np.random.default_rng(seed)
-    chain = Chain(length, width, border, 1)
-    for j in range(length):
-        count = width * (2 if j + 1 < length else 1) + border
+    chance = np.random.default_rng(shape.length)
+
+    def positive(count: int) -> Array:
         rows = chance.normal(0.0, 1.0, (3 * count, count)) / np.sqrt(count)
-        each = rows.T @ rows + 0.1 * np.eye(count)
-        own, last = slice(0, width), slice(count - border, count)
-        chain.diagonal[j] += each[own, own]
-        chain.border[j] += each[own, last]
-        chain.corner += each[last, last]
-        if j + 1 < length:
-            after = slice(width, 2 * width)
-            chain.diagonal[j + 1] += each[after, after]
-            chain.border[j + 1] += each[after, last]
-            chain.link[j] = each[after, own]
-    chain.gradient[:] = chance.normal(0.0, 1.0, (length, width))
-    chain.corner_gradient[:] = chance.normal(0.0, 1.0, border)
+        return np.asarray(rows.T @ rows + 0.1 * np.eye(count))
+
+    chain = Chain(shape.length, groups_of(shape))
+    for strand in chain.strands:
+        width = len(strand.group.columns)
+        for j in range(shape.length):
+            each = positive(width + len(strand.group.lasting))
+            strand.diagonal[j] += each[:width, :width]
+            strand.border[j] += each[:width, width:]
+            strand.corner += each[width:, width:]
+            for block in range(len(strand.group.walks) if j + 1 < shape.length else 0):
+                own, each = slice(block * shape.size, (block + 1) * shape.size), positive(2 * shape.size)
+                strand.diagonal[j, own, own] += each[: shape.size, : shape.size]
+                strand.diagonal[j + 1, own, own] += each[shape.size :, shape.size :]
+                strand.link[j, block] = each[shape.size :, : shape.size]
+        strand.gradient[:] = chance.normal(0.0, 1.0, strand.gradient.shape)
+        strand.corner_gradient[:] = chance.normal(0.0, 1.0, strand.corner_gradient.shape)
     return chain
 
 
@@ -50,49 +83,71 @@ def assert_alike(found: NDArray[Any], expected: NDArray[Any], tolerance: float) 
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_solving_what_a_remainder_leaves_equals_solving_whole(shape: tuple[int, int, int]) -> None:
-    length, width, border = shape
-    whole, gradient = dense(random_chain(*shape, seed=length))
+def test_solving_what_a_remainder_leaves_equals_solving_whole(shape: Shape) -> None:
+    whole, gradient = dense(random_chain(shape))
     expected = np.linalg.solve(whole, gradient)
-    for keyframe in sorted({0, 1, length // 2, length - 1}):
-        chain = random_chain(*shape, seed=length)
+    for keyframe in sorted({0, 1, shape.length // 2, shape.length - 1}):
+        chain = random_chain(shape)
         left = chain.remainder(keyframe)
-        rest = Chain(length - keyframe, width, border, 1)
-        rest.diagonal[:], rest.link[:] = chain.diagonal[keyframe:], chain.link[keyframe:]
-        rest.border[:], rest.gradient[:] = chain.border[keyframe:], chain.gradient[keyframe:]
-        rest.diagonal[0], rest.border[0] = left.matrix[:width, :width], left.matrix[:width, width:]
-        rest.corner[:], rest.gradient[0] = left.matrix[width:, width:], left.vector[:width]
-        rest.corner_gradient[:] = left.vector[width:]
+        rest, width = Chain(shape.length - keyframe, groups_of(shape)), chain.width
+        for strand, before in zip(rest.strands, chain.strands, strict=True):
+            own, lasting = strand.group.columns, width + strand.group.lasting
+            strand.diagonal[:], strand.link[:] = before.diagonal[keyframe:], before.link[keyframe:]
+            strand.wide[:] = before.wide[keyframe:]
+            strand.diagonal[0], strand.border[0] = (
+                left.matrix[np.ix_(own, own)],
+                left.matrix[np.ix_(own, lasting)],
+            )
+            strand.gradient[0] = left.vector[own]
+        rest.strands[-1].corner[:] = left.matrix[width:, width:]
+        rest.strands[-1].corner_gradient[:] = left.vector[width:]
         assert_alike(np.concatenate([a.ravel() for a in rest.solve()]), expected[keyframe * width :], 1e-9)
         on = np.concatenate([a.ravel() for a in chain.solve()])
         assert_alike(on, expected, 1e-9)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_a_remainder_at_the_end_is_the_marginal_of_the_newest_keyframe_and_the_border(
-    shape: tuple[int, int, int],
-) -> None:
-    length, width, _ = shape
-    whole, gradient = dense(random_chain(*shape, seed=length))
-    kept = slice((length - 1) * width, None)
-    left = random_chain(*shape, seed=length).remainder(length - 1)
+def test_a_remainder_at_the_end_is_the_marginal_of_the_newest_keyframe_and_the_border(shape: Shape) -> None:
+    whole, gradient = dense(random_chain(shape))
+    chain = random_chain(shape)
+    kept = slice((shape.length - 1) * chain.width, None)
+    left = chain.remainder(shape.length - 1)
     assert_alike(np.linalg.inv(left.matrix), np.linalg.inv(whole)[kept, kept], 1e-9)
     assert_alike(np.linalg.solve(left.matrix, left.vector), np.linalg.solve(whole, gradient)[kept], 1e-9)
 
 
-@pytest.mark.parametrize("shape", [*SHAPES, (1, 3, 2), (1, 4, 0)])
-def test_covariances_are_blocks_of_the_dense_inverse(shape: tuple[int, int, int]) -> None:
-    length, width, _ = shape
-    chain = random_chain(*shape, seed=length)
-    inverse = np.linalg.inv(dense(chain)[0])
+@pytest.mark.parametrize("shape", [*SHAPES, alone(1, 3, 2), alone(1, 4, 0)])
+def test_covariances_and_responses_are_blocks_of_the_dense_inverse(shape: Shape) -> None:
+    chain = random_chain(shape)
+    inverse, width = np.linalg.inv(dense(chain)[0]), chain.width
     chain.solve()
-    keyframes, ahead, border = chain.covariances()
-    for j in range(length):
-        own, after = slice(j * width, (j + 1) * width), slice((j + 1) * width, (j + 2) * width)
-        assert_alike(keyframes[j], inverse[own, own], 1e-9)
-        if j + 1 < length:
-            assert_alike(ahead[j], inverse[own, after], 1e-9)
-    assert_alike(border, inverse[length * width :, length * width :], 1e-9)
+    walks, ahead, border = chain.covariances()
+    for j, i in np.ndindex(shape.length, width // shape.size):
+        own = slice(j * width + i * shape.size, j * width + (i + 1) * shape.size)
+        assert_alike(walks[j, i], inverse[own, own], 1e-9)
+        if j + 1 < shape.length:
+            assert_alike(ahead[j, i], inverse[own, own.start + width : own.stop + width], 1e-9)
+    size = shape.length * width
+    assert_alike(border, inverse[size:, size:], 1e-9)
+    put = np.random.default_rng(0).normal(0.0, 1.0, (len(inverse), 2))
+    moved, fixed = chain.response(put[:size].reshape(shape.length, width, 2), put[size:])
+    assert_alike(np.concatenate([moved.reshape(size, 2), fixed]), inverse @ put, 1e-9)
+
+
+def test_groups_are_what_direct_readings_couple() -> None:
+    """Walks 0 and 2 measure to each other, and to the first column of the border; 1 to the second."""
+    rows = np.full((4, 12), -1)
+    rows[0, [0, 6]] = 2, 14
+    rows[1, [0, 6]] = 13, 18
+    rows[2, [0, 6]] = 7, 19
+    rows[3, 0] = 20
+    groups = Groups(18, 3, [rows])
+    found = [(g.walks.tolist(), g.lasting.tolist()) for g in groups.each]
+    assert found == [([0, 2], [0]), ([1], [1]), ([], [0, 1, 2])]
+    placed = groups.placed(np.zeros(4, dtype=np.int64), rows)
+    assert placed.group.tolist() == [0, 0, 1, 2]
+    assert placed.columns[:, [0, 6]].tolist() == [[2, 8], [7, 12], [1, 6], [2, -1]]
+    assert [part.tolist() for part in groups.split(placed.group)] == [[0, 1], [2], [3]]
 
 
 def prior_at(problem: Problem, solved: Solved, cut: int) -> Prior:
@@ -131,11 +186,11 @@ def assert_same_from_cut(whole: Problem, at: Solved, cut: int, window: Problem, 
     steps, fixed = again.chain.solve()
     reached = again.x + np.concatenate([steps.ravel(), fixed])
     found, right = again.chain.covariances(), at.chain.covariances()
-    sigma = np.sqrt(np.diagonal(right[0], axis1=1, axis2=2)[cut:])
+    sigma = np.sqrt(np.diagonal(right[0], axis1=2, axis2=3)[cut:])
     lasting = np.sqrt(np.diagonal(right[2]))
     assert np.abs((reached - expected) / np.concatenate([sigma.ravel(), lasting])).max() < 1e-6
-    assert np.abs((found[0] - right[0][cut:]) / sigma[:, :, None] / sigma[:, None]).max() < 1e-6
-    assert np.abs((found[1] - right[1][cut:]) / sigma[:-1, :, None] / sigma[1:, None]).max() < 1e-6
+    assert np.abs((found[0] - right[0][cut:]) / sigma[..., None] / sigma[..., None, :]).max() < 1e-6
+    assert np.abs((found[1] - right[1][cut:]) / sigma[:-1, ..., None] / sigma[1:, ..., None, :]).max() < 1e-6
     assert np.abs((found[2] - right[2]) / lasting[:, None] / lasting).max(initial=0.0) < 1e-6
 
 

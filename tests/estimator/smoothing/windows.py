@@ -56,17 +56,18 @@ def at_rest(problem: Problem, x: Array, rest: float = 1e-11, share: float = 0.5)
 
 def dense(chain: Chain) -> tuple[Array, Array]:
     """A chain that is not solved yet as one matrix and its gradient."""
-    length, width, border = chain.border.shape
+    length, width = len(chain.strands[0].diagonal), chain.width
     size = length * width
-    whole = np.zeros((size + border, size + border))
-    for j in range(length):
-        own = slice(j * width, (j + 1) * width)
-        whole[own, own] = chain.diagonal[j]
-        whole[own, size:] = chain.border[j]
-        whole[size:, own] = chain.border[j].T
-        if j + 1 < length:
-            after = slice((j + 1) * width, (j + 2) * width)
-            link = block_diag(*chain.link[j])
-            whole[after, own], whole[own, after] = link, link.T
-    whole[size:, size:] = chain.corner
-    return whole, np.concatenate([chain.gradient.ravel(), chain.corner_gradient])
+    whole = np.zeros((size + chain.lasting, size + chain.lasting))
+    for strand in chain.strands:
+        rest = size + strand.group.lasting
+        whole[np.ix_(rest, rest)] += strand.corner
+        for j in range(length):
+            own = j * width + strand.group.columns
+            whole[np.ix_(own, own)] = strand.diagonal[j]
+            whole[np.ix_(own, rest)] = strand.border[j]
+            whole[np.ix_(rest, own)] = strand.border[j].T
+            if j + 1 < length and len(own):
+                link = block_diag(*strand.link[j])
+                whole[np.ix_(own + width, own)], whole[np.ix_(own, own + width)] = link, link.T
+    return whole, chain.slope()

@@ -1,0 +1,172 @@
+"""Rows of readings and motions added to the blocks of a chain, compiled."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from estimator.graph.dense import Array
+from estimator.graph.kernels import Integers
+
+
+@njit(cache=True)
+def couple(columns: Integers, width: int, size: int, label: Integers, touched: NDArray[np.bool_]) -> None:
+    """Give blocks that share a row one label, the lowest of theirs, and tell what each touches of the border.
+
+    Args:
+        columns: which numbers each row depends on, m × c: those of a keyframe first (below `width`), those of
+            the border after them; −1: unused.
+        width: columns of a keyframe, in blocks of `size`.
+        size: columns of a block.
+        label: of each block, changed.
+        touched: blocks × s, changed: of one block of a row that has several.
+    """
+    m, most = columns.shape
+    for r in range(m):
+        first = -1
+        for a in range(most):
+            if 0 <= columns[r, a] < width:
+                block = columns[r, a] // size
+                if first < 0:
+                    first = block
+                elif label[block] != label[first]:
+                    low, high = min(label[block], label[first]), max(label[block], label[first])
+                    for i in range(len(label)):
+                        if label[i] == high:
+                            label[i] = low
+        if first >= 0:
+            for a in range(most):
+                if columns[r, a] >= width:
+                    touched[first, columns[r, a] - width] = True
+
+
+@njit(cache=True)
+def localise(
+    columns: Integers, width: int, size: int, group_of: Integers, place: Integers, group: Integers
+) -> Integers:
+    """Columns of rows in the numbering of their groups, m × c.
+
+    Args:
+        columns: as `couple` takes them.
+        width: columns of a keyframe.
+        size: columns of a block.
+        group_of: group of each block.
+        place: column of each group's numbering, groups × all columns.
+        group: of each row, m, changed: the last one where it touches nothing that moves.
+    """
+    m, most = columns.shape
+    found = np.full((m, most), -1, dtype=np.int64)
+    for r in range(m):
+        group[r] = len(place) - 1
+        for a in range(most):
+            if 0 <= columns[r, a] < width:
+                group[r] = group_of[columns[r, a] // size]
+                break
+        for a in range(most):
+            if columns[r, a] >= 0:
+                found[r, a] = place[group[r], columns[r, a]]
+    return found
+
+
+@njit(cache=True)
+def scatter_rows(
+    chosen: Integers,
+    row: Integers,
+    slab: Integers,
+    columns: Integers,
+    jacobian: Array,
+    information: Array,
+    residual: Array,
+    diagonal: Array,
+    wide: Array,
+    corner: Array,
+    corner_gradient: Array,
+) -> None:
+    """Add HᵀP⁻¹H and HᵀP⁻¹r of some of m rows to a chain.
+
+    Args:
+        chosen: the rows to be added.
+        row: the reading that each row belongs to, m.
+        slab: keyframe of each reading; any where it touches none.
+        columns: which numbers each reading depends on, c: those of the keyframe first (below its width),
+            those of the border after them; −1: unused.
+        jacobian: derivatives, m × c.
+        information: P⁻¹, m.
+        residual: z − h(x), m.
+        diagonal: k × n × n, changed.
+        wide: border and gradient of each keyframe, k × n × (s + 1), changed.
+        corner: s × s, changed.
+        corner_gradient: s, changed.
+    """
+    width, lasting = diagonal.shape[1], len(corner_gradient)
+    most = columns.shape[1]
+    column, slope = np.empty(most, dtype=np.int64), np.empty(most)
+    for r in chosen:
+        used, reading = 0, row[r]
+        for a in range(most):
+            if columns[reading, a] >= 0 and jacobian[r, a] != 0.0:
+                column[used], slope[used] = columns[reading, a], jacobian[r, a]
+                used += 1
+        square, beside = diagonal[slab[reading]], wide[slab[reading]]
+        for a in range(used):
+            ca = column[a]
+            pulled = slope[a] * information[r]
+            if ca < width:
+                beside[ca, lasting] += pulled * residual[r]
+                for b in range(used):
+                    cb = column[b]
+                    if cb < width:
+                        square[ca, cb] += pulled * slope[b]
+                    else:
+                        beside[ca, cb - width] += pulled * slope[b]
+            else:
+                corner_gradient[ca - width] += pulled * residual[r]
+                for b in range(used):
+                    if column[b] >= width:
+                        corner[ca - width, column[b] - width] += pulled * slope[b]
+
+
+@njit(cache=True)
+def add_motion(
+    block: int,
+    first: int,
+    transition: Array,
+    information: Array,
+    residual: Array,
+    diagonal: Array,
+    link: Array,
+    wide: Array,
+) -> None:
+    """Add the motion of one node to a chain: x' − F x = r with information Q⁻¹, step after step.
+
+    Args:
+        block: which of the keyframe's blocks of b numbers is the node's.
+        first: keyframe that its first step leaves from.
+        transition: F, m × b × b.
+        information: Q⁻¹, m × b × b.
+        residual: r, m × b.
+        diagonal: k × n × n, changed.
+        link: (k − 1) × blocks × b × b, changed.
+        wide: k × n × (s + 1), its last column changed.
+    """
+    m, size = residual.shape
+    at, last = block * size, wide.shape[2] - 1
+    pulled = np.empty((size, size))
+    for step in range(m):
+        before, after = first + step, first + step + 1
+        known, way = information[step], transition[step]
+        for r in range(size):
+            for c in range(size):
+                total = 0.0
+                for i in range(size):
+                    total += way[i, r] * known[i, c]
+                pulled[r, c] = total
+        for r in range(size):
+            for c in range(size):
+                total = 0.0
+                for i in range(size):
+                    total += pulled[r, i] * way[i, c]
+                diagonal[before, at + r, at + c] += total
+                diagonal[after, at + r, at + c] += known[r, c]
+                link[before, block, c, r] -= pulled[r, c]
+                wide[before, at + r, last] += pulled[r, c] * residual[step, c]
+                wide[after, at + r, last] -= known[r, c] * residual[step, c]

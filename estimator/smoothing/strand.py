@@ -1,0 +1,125 @@
+"""The chain of one group of walks, with what it touches of the border.
+
+Elimination along it is operation 3 of paper A (eq. 17), keyframe after keyframe; what stays at its end is a
+Kirchhoff matrix of its part of the border. Cost grows with the length of the chain, not with its cube.
+"""
+
+import numpy as np
+
+from estimator.graph.dense import Array, mended
+from estimator.graph.kernels import eliminate, selected_inverse, substitute
+from estimator.smoothing.groups import Group
+
+
+class Strand:
+    """Normal matrix and gradient of a group, to be filled and then eliminated once.
+
+    Attributes:
+        group: its walks and its part of the border.
+        diagonal: D, k × n × n.
+        link: E, keyframe j + 1 by keyframe j, (k − 1) × blocks × b × b: a node's next step depends on no
+            other's, so there are only blocks along its diagonal.
+        wide: B and the gradient of the keyframes beside it, k × n × (s + 1).
+        corner: C, s × s.
+        corner_gradient: of the border, s.
+    """
+
+    def __init__(self, length: int, group: Group) -> None:
+        self.group = group
+        width, border, blocks = len(group.columns), len(group.lasting), len(group.walks)
+        size = width // max(blocks, 1)
+        self.diagonal: Array = np.zeros((length, width, width))
+        self.link: Array = np.zeros((max(length - 1, 0), blocks, size, size))
+        self.wide: Array = np.zeros((length, width, border + 1))
+        self.corner: Array = np.zeros((border, border))
+        self.corner_gradient: Array = np.zeros(border)
+        self._done = 0
+
+    @property
+    def border(self) -> Array:
+        """B, k × n × s."""
+        return self.wide[:, :, :-1]
+
+    @property
+    def gradient(self) -> Array:
+        """Of the keyframes, k × n."""
+        return self.wide[:, :, -1]
+
+    def damp(self, damping: float) -> None:
+        """Raise the diagonal by a share of itself (Marquardt)."""
+        numbers, rest = range(self.diagonal.shape[1]), range(len(self.corner))
+        self.diagonal[:, numbers, numbers] *= 1.0 + damping
+        self.corner[rest, rest] *= 1.0 + damping
+
+    def eliminate(self, until: int, mend: bool = True) -> None:
+        """Eliminate the keyframes before one: the corner keeps what they say of the border.
+
+        Args:
+            until: not before one asked for earlier.
+            mend: whether what is not positive definite is for rounding to answer for.
+
+        Raises:
+            ValueError: the matrix is not finite, or far from positive definite.
+        """
+        if until <= self._done or not len(self.group.walks):
+            return
+        if not np.isfinite(self.diagonal).all():
+            raise ValueError("the normal equations of the incident are not finite")
+        at, mended_at = self._done, -1
+        while at < until:
+            at = eliminate(at, until, self.diagonal, self.link, self.wide)
+            if at < until:
+                if not mend or at == mended_at or not np.isfinite(self.diagonal[at]).all():
+                    raise ValueError("the normal equations of the incident are not positive definite")
+                self.diagonal[at] = mended(self.diagonal[at])
+                mended_at = at
+        wide = self.wide[self._done : until].reshape(-1, self.wide.shape[2])
+        taken = wide.T @ wide
+        self.corner -= taken[:-1, :-1]
+        self.corner_gradient -= taken[:-1, -1]
+        self._done = until
+
+    def substitute(self, fixed: Array) -> Array:
+        """Steps of the keyframes, k × n, for a step of its part of the border, s."""
+        steps = np.zeros(self.gradient.shape)
+        if steps.size:
+            substitute(self.diagonal, self.link, self.wide, fixed, steps)
+        return steps
+
+    def forth(self, y: Array, rest: Array) -> None:
+        """Carry right sides to its end: `y` of the keyframes, k × n × c, and `rest` of the border, s × c."""
+        length, width, count = y.shape
+        blocks, size = self.link.shape[1:3]
+        for j in range(length if width else 0):
+            y[j] = self.diagonal[j] @ y[j]
+            rest -= self.border[j].T @ y[j]
+            if j < length - 1:
+                back = (self.diagonal[j].T @ y[j]).reshape(blocks, size, count)
+                y[j + 1] -= (self.link[j] @ back).reshape(width, count)
+
+    def back(self, y: Array, fixed: Array) -> None:
+        """Answers in the place of what `forth` left in `y`, for those of the border, s × c."""
+        length, width, count = y.shape
+        blocks, size = self.link.shape[1:3]
+        for j in range(length - 1 if width else -1, -1, -1):
+            ahead = y[j] - self.border[j] @ fixed
+            if j < length - 1:
+                after = self.link[j].transpose(0, 2, 1) @ y[j + 1].reshape(blocks, size, count)
+                ahead -= self.diagonal[j] @ after.reshape(width, count)
+            y[j] = self.diagonal[j].T @ ahead
+
+    def covariances(self, border: Array) -> tuple[Array, Array]:
+        """Of each walk at each keyframe, k × walks × b × b, and with itself at the next one.
+
+        The selected inverse, from the end back to the start: only what the keyframe before and the border
+        need is ever formed.
+
+        Args:
+            border: covariance of its part of the border, s × s.
+        """
+        length, blocks, size, _ = len(self.diagonal), *self.link.shape[1:]
+        found = np.zeros((length, blocks, size, size))
+        ahead = np.zeros((max(length - 1, 0), blocks, size, size))
+        if blocks:
+            selected_inverse(self.diagonal, self.link, self.wide, border, found, ahead)
+        return found, ahead
