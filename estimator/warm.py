@@ -63,7 +63,7 @@ def _warm_chain() -> None:
     readings = Readings(slab, one, one, pair, end, end, slab, one, end, end, end)
     residuals(readings, x)
     jacobians(readings, x)
-    bends(readings, x, one, one, True)
+    bends(readings, slab, x, one, one, True)
 
 
 def _warm_filter() -> None:

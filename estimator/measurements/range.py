@@ -46,6 +46,13 @@ class PairJacobian(NamedTuple):
 
 
 @njit(cache=True)
+def range_slope(squared_m2: float, scale_error: float) -> float:
+    """How a range grows with the distance, over the distance, at ‖a − b‖² (m²)."""
+    slope: float = (1.0 + scale_error) / np.sqrt(squared_m2 + NEAR_M * NEAR_M)
+    return slope
+
+
+@njit(cache=True)
 def predict_range(a: Array, b: Array, scale_error: Array, bias_m: Array) -> PairJacobian:
     """Range that a technology with a scale and a bias of its own reports: (1 + k) ‖a − b‖ + c.
 
@@ -62,9 +69,9 @@ def predict_range(a: Array, b: Array, scale_error: Array, bias_m: Array) -> Pair
     predicted, by_a, by_b, by_extra = np.empty(m), np.empty((m, 3)), np.empty((m, 3)), np.ones((m, 2))
     for i in range(m):
         e, n, u = a[i, 0] - b[i, 0], a[i, 1] - b[i, 1], a[i, 2] - b[i, 2]
-        distance = np.sqrt(e * e + n * n + u * u + NEAR_M * NEAR_M)
-        scale = 1.0 + scale_error[i]
-        along = scale / distance
+        squared = e * e + n * n + u * u
+        distance, scale = np.sqrt(squared + NEAR_M * NEAR_M), 1.0 + scale_error[i]
+        along = range_slope(squared, scale_error[i])
         by_a[i, 0], by_a[i, 1], by_a[i, 2] = e * along, n * along, u * along
         by_b[i, 0], by_b[i, 1], by_b[i, 2] = -e * along, -n * along, -u * along
         by_extra[i, 0] = distance

@@ -30,6 +30,13 @@ ANTENNA_M = 0.3
 
 
 @njit(cache=True)
+def rssi_slope(squared_m2: float, exponent: float) -> float:
+    """How a power grows with the distance, over the distance, at ‖a − b‖² (m²), in dB / m²."""
+    slope: float = -10.0 / np.log(10.0) * exponent / (squared_m2 + ANTENNA_M * ANTENNA_M)
+    return slope
+
+
+@njit(cache=True)
 def predict_rssi(a: Array, b: Array, power_dbm: Array, exponent: Array) -> PairJacobian:
     """Received power by the log-distance law: P0 − 10 n log10 d, Gaussian in dB (estimation.md, point 4).
 
@@ -43,9 +50,9 @@ def predict_rssi(a: Array, b: Array, power_dbm: Array, exponent: Array) -> PairJ
     predicted, by_a, by_b, by_extra = np.empty(m), np.empty((m, 3)), np.empty((m, 3)), np.ones((m, 2))
     for i in range(m):
         e, n, u = a[i, 0] - b[i, 0], a[i, 1] - b[i, 1], a[i, 2] - b[i, 2]
-        squared = e * e + n * n + u * u + ANTENNA_M * ANTENNA_M
-        tens = 5.0 * np.log10(squared)
-        along = -10.0 / np.log(10.0) * exponent[i] / squared
+        squared = e * e + n * n + u * u
+        tens = 5.0 * np.log10(squared + ANTENNA_M * ANTENNA_M)
+        along = rssi_slope(squared, exponent[i])
         by_a[i, 0], by_a[i, 1], by_a[i, 2] = e * along, n * along, u * along
         by_b[i, 0], by_b[i, 1], by_b[i, 2] = -e * along, -n * along, -u * along
         by_extra[i, 1] = -tens

@@ -14,10 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from estimator.graph.dense import Array, Indices, factorise, inverse, mended, solve
-from estimator.graph.kernels import Integers
-from estimator.graph.scatter import scatter_rows
-from estimator.smoothing.groups import Group, Placed
+from estimator.graph.dense import Array, factorise, inverse, mended, solve
+from estimator.smoothing.groups import Group
 from estimator.smoothing.strand import Strand
 
 
@@ -48,40 +46,6 @@ class Chain:
         self.lasting = len(groups[-1].lasting)
         self._length = length
         self._covariance: Array = np.zeros((self.lasting, self.lasting))
-
-    def add(
-        self,
-        placed: Placed,
-        parts: list[Indices],
-        row: Integers,
-        jacobian: Array,
-        information: Array,
-        residual: Array,
-    ) -> None:
-        """Add m rows.
-
-        Args:
-            placed: the readings.
-            parts: positions of each group's rows.
-            row: the reading that each row belongs to, m.
-            jacobian: derivatives, m × c.
-            information: P⁻¹, m.
-            residual: z − h(x), m.
-        """
-        for strand, chosen in zip(self.strands, parts, strict=True):
-            scatter_rows(
-                chosen,
-                row,
-                placed.slab,
-                placed.columns,
-                jacobian,
-                information,
-                residual,
-                strand.diagonal,
-                strand.wide,
-                strand.corner,
-                strand.corner_gradient,
-            )
 
     def damp(self, damping: float) -> None:
         """Raise the diagonal by a share of itself (Marquardt): a shorter step, and more along the slope."""

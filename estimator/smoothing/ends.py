@@ -60,27 +60,40 @@ class Places(NamedTuple):
 
 
 @njit(cache=True)
+def place_end(ends: Table, i: int, x: Array, place: Array, turned: Array) -> None:
+    """Where one end is at an estimate x, flat.
+
+    Args:
+        ends: the table that it is in.
+        i: its row.
+        x: the estimate.
+        place: takes its position, 3 (m).
+        turned: takes the derivatives by the last three columns, 3 × 3; zeros before.
+    """
+    kind, at = ends.kind[i], ends.at[i]
+    for c in range(3):
+        place[c] = x[at[c]] if kind in (STANDING, UNIT, FREE) else ends.fixed_m[i, c]
+    if kind == UNIT:
+        led = lead(x[at[3]], x[at[4]], 1.0 + x[at[5]], ends.delta_m[i], ends.moment[i])
+        place[0] += led.east
+        place[1] += led.north
+        place[2] += led.up
+        turned[0, 0], turned[1, 0] = led.by_heading_e, led.by_heading_n
+        turned[0, 1], turned[1, 1] = led.by_bias_e, led.by_bias_n
+        turned[0, 2], turned[1, 2] = led.by_scale_e, led.by_scale_n
+    elif kind == FREE:
+        for c in range(3):
+            place[c] += x[at[3 + c]] * ends.duration_s[i]
+            turned[c, c] = ends.duration_s[i]
+
+
+@njit(cache=True)
 def place_ends(ends: Table, x: Array) -> Places:
     """Where m ends are at an estimate x, flat."""
     m = len(ends.kind)
-    place, turned = ends.fixed_m.copy(), np.zeros((m, 3, 3))
+    place, turned = np.empty((m, 3)), np.zeros((m, 3, 3))
     for i in range(m):
-        kind, at = ends.kind[i], ends.at[i]
-        if kind in (STANDING, UNIT, FREE):
-            for c in range(3):
-                place[i, c] = x[at[c]]
-        if kind == UNIT:
-            led = lead(x[at[3]], x[at[4]], 1.0 + x[at[5]], ends.delta_m[i], ends.moment[i])
-            place[i, 0] += led.east
-            place[i, 1] += led.north
-            place[i, 2] += led.up
-            turned[i, 0, 0], turned[i, 1, 0] = led.by_heading_e, led.by_heading_n
-            turned[i, 0, 1], turned[i, 1, 1] = led.by_bias_e, led.by_bias_n
-            turned[i, 0, 2], turned[i, 1, 2] = led.by_scale_e, led.by_scale_n
-        elif kind == FREE:
-            for c in range(3):
-                place[i, c] += x[at[3 + c]] * ends.duration_s[i]
-                turned[i, c, c] = ends.duration_s[i]
+        place_end(ends, i, x, place[i], turned[i])
     return Places(place, turned)
 
 

@@ -26,18 +26,18 @@ class Group(NamedTuple):
 
 
 class Placed(NamedTuple):
-    """Rows of m readings among the groups.
+    """Readings among the groups, m.
 
     Attributes:
         slab: keyframe of each, m.
         columns: what each depends on, m × c: columns of its group's keyframe first, those of the group's
             border after them; −1: unused.
-        group: that each belongs to, m.
+        parts: which of them are of each group, in order.
     """
 
     slab: Integers
     columns: Integers
-    group: Integers
+    parts: list[Indices]
 
 
 class Groups:
@@ -83,13 +83,7 @@ class Groups:
     def placed(self, slab: Integers, columns: Integers) -> Placed:
         """Rows with columns as in `coupled`, each in its own group's numbering."""
         group = np.empty(len(columns), dtype=np.int64)
-        return Placed(slab, localise(columns, self._width, STATES, self._group, self._place, group), group)
-
-    def split(self, group: Integers) -> list[Indices]:
-        """Positions of the rows of each group, in order.
-
-        Args:
-            group: of each row, m.
-        """
-        order = np.argsort(group.astype(np.int16), kind="stable")
-        return np.split(order, np.cumsum(np.bincount(group, minlength=len(self.each)))[:-1])
+        local = localise(columns, self._width, STATES, self._group, self._place, group)
+        order = np.argsort(group, kind="stable")
+        ends = np.cumsum(np.bincount(group, minlength=len(self.each)))[:-1]
+        return Placed(slab, local, np.split(order, ends))

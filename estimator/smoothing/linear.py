@@ -9,9 +9,9 @@ from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import predict_bearing
-from estimator.measurements.range import PairJacobian, predict_range
-from estimator.measurements.rssi import ANTENNA_M, predict_rssi
-from estimator.smoothing.ends import FIXED, UNIT, Table, place_ends
+from estimator.measurements.range import PairJacobian, predict_range, range_slope
+from estimator.measurements.rssi import ANTENNA_M, predict_rssi, rssi_slope
+from estimator.smoothing.ends import FIXED, UNIT, Table, place_end, place_ends
 
 ANY = 14
 """Numbers that one row depends on at most: two ends of six, two of a technology."""
@@ -154,7 +154,9 @@ def jacobians(readings: Readings, x: Array) -> Array:
 
 
 @njit(cache=True)
-def bends(readings: Readings, x: Array, information: Array, residual: Array, signed: bool) -> Bends:
+def bends(
+    readings: Readings, chosen: Integers, x: Array, information: Array, residual: Array, signed: bool
+) -> Bends:
     """The curvature of distances, which Gauss-Newton leaves out: −P⁻¹ r ∂²h/∂x².
 
     A distance that does not fit its reading bends across the line of sight, and a power that falls with its
@@ -165,44 +167,45 @@ def bends(readings: Readings, x: Array, information: Array, residual: Array, sig
 
     Args:
         readings: of the window.
+        chosen: which pairs.
         x: the estimate, flat.
         information: P⁻¹ of each pair, m at least.
         residual: z − h(x) as it is weighed, m at least.
         signed: take negative curvature along the floor too; else only what is positive.
     """
-    a, b = place_ends(readings.a, x), place_ends(readings.b, x)
-    slopes = predict_pairs(readings, a.place, b.place, x).by_a
-    m, count = len(readings.kind), 0
-    pair = np.empty(3 * m, dtype=np.int64)
-    axis, known = np.empty((3 * m, 3)), np.empty(3 * m)
-    for i in range(m):
+    m, count = len(chosen), 0
+    pair, known, jacobian = np.empty(3 * m, dtype=np.int64), np.empty(3 * m), np.zeros((3 * m, ANY))
+    a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
+    axis, along = np.empty((3, 3)), np.empty(3)
+    for i in chosen:
         if readings.kind[i] > RSSI:
             continue
-        e, n, u = a.place[i] - b.place[i]
+        by_a[:], by_b[:] = 0.0, 0.0
+        place_end(readings.a, i, x, a, by_a)
+        place_end(readings.b, i, x, b, by_b)
+        e, n, u = a[0] - b[0], a[1] - b[1], a[2] - b[2]
         level, squared = e * e + n * n, e * e + n * n + u * u
         if level < NOWHERE_M2:
             continue
-        slope = (slopes[i, 0] * e + slopes[i, 1] * n + slopes[i, 2] * u) / squared
+        state = x[readings.extra[i, 0 if readings.kind[i] == RANGE else 1]]
+        slope = range_slope(squared, state) if readings.kind[i] == RANGE else rssi_slope(squared, state)
         across = -information[i] * residual[i] * slope
         distance, flat = np.sqrt(squared), np.sqrt(level)
-        if across > 0.0 or signed:
-            axis[count] = (-n / flat, e / flat, 0.0)
-            pair[count], known[count] = i, across
-            count += 1
-        if across > 0.0:
-            axis[count] = (-e * u / (flat * distance), -n * u / (flat * distance), flat / distance)
-            pair[count], known[count] = i, across
-            count += 1
+        axis[0] = (-n / flat, e / flat, 0.0)
+        axis[1] = (-e * u / (flat * distance), -n * u / (flat * distance), flat / distance)
+        axis[2] = (e / distance, n / distance, u / distance)
+        along[0], along[1] = across if signed else max(across, 0.0), max(across, 0.0)
+        along[2] = 0.0
         if readings.kind[i] == RSSI:
-            along = across * (1.0 - 2.0 * squared / (squared + ANTENNA_M * ANTENNA_M))
-            if along > 0.0 or signed:
-                axis[count] = (e / distance, n / distance, u / distance)
-                pair[count], known[count] = i, along
-                count += 1
-    jacobian = np.zeros((count, ANY))
-    for i in range(count):
-        if readings.a.kind[pair[i]] != FIXED:
-            pull(axis[i], a.turned[pair[i]], jacobian[i, :6])
-        if readings.b.kind[pair[i]] != FIXED:
-            pull(-axis[i], b.turned[pair[i]], jacobian[i, 6:12])
-    return Bends(pair[:count], jacobian, known[:count])
+            along[2] = across * (1.0 - 2.0 * squared / (squared + ANTENNA_M * ANTENNA_M))
+            along[2] = along[2] if signed else max(along[2], 0.0)
+        for way in range(3):
+            if along[way] == 0.0:
+                continue
+            pair[count], known[count] = i, along[way]
+            if readings.a.kind[i] != FIXED:
+                pull(axis[way], by_a, jacobian[count, :6])
+            if readings.b.kind[i] != FIXED:
+                pull(-axis[way], by_b, jacobian[count, 6:12])
+            count += 1
+    return Bends(pair[:count], jacobian[:count], known[:count])

@@ -224,6 +224,6 @@ class Rows:
         """Derivatives at an estimate x, flat, m × 14."""
         return jacobians(self._readings, x)
 
-    def bends(self, x: Array, information: Array, residual: Array, signed: bool) -> Bends:
-        """What the rows' second derivatives add to the curvature; see `linear.bends`."""
-        return bends(self._readings, x, information, residual, signed)
+    def bends(self, chosen: Integers, x: Array, information: Array, residual: Array, signed: bool) -> Bends:
+        """What the second derivatives of some pairs add to the curvature; see `linear.bends`."""
+        return bends(self._readings, chosen, x, information, residual, signed)

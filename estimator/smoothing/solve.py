@@ -28,6 +28,8 @@ LEAST_SHARE, FARTHEST = 0.1, 4.0
 """Shares of a step between which the cost is looked for at its lowest."""
 CLOSE = 0.3
 """A step is good enough where the lowest cost is within this share of it."""
+TOGETHER = 4096
+"""Pairs that are bent at a time: what they need stays in the processor's cache."""
 LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e3
 
 
@@ -79,12 +81,12 @@ class Problem:
         self._groups = Groups(layout.width, layout.border, coupled)
         self._every = np.arange(len(rows.slab))
         self._placed = self._groups.placed(rows.slab, rows.columns)
-        self._parts = self._groups.split(self._placed.group)
+        pairs = [part[: np.searchsorted(part, len(rows.pairs))] for part in self._placed.parts]
+        self._pairs = [np.split(part, range(TOGETHER, len(part), TOGETHER)) for part in pairs]
         size, width = layout.length * layout.width, max(layout.width, 1)
         slab = np.where(self._at < size, self._at // width, 0)
         columns = np.where(self._at < size, self._at % width, self._at - size + layout.width)
         self._known = self._groups.placed(slab, columns[:, None])
-        self._known_parts = self._groups.split(self._known.group)
 
     def _way(self, index: int, walk: Walk) -> tuple[Array, Array | Free]:
         """Times between a walk's keyframes, and what lies between them wherever they are."""
@@ -183,8 +185,11 @@ class Problem:
             placed = placed._replace(slab=np.minimum(placed.slab, until))
             known = known._replace(slab=np.minimum(known.slab, until))
         ones, off = np.ones((len(certain), 1)), self._mean - x[self._at]
-        chain.add(known, self._known_parts, np.arange(len(certain)), ones, certain, off)
-        chain.add(placed, self._parts, self._every, linear.jacobian, information, weighted.residual)
+        every = np.arange(len(certain))
+        for strand, part in zip(chain.strands, known.parts, strict=True):
+            strand.add(known, part, every, ones, certain, off)
+        for strand, part in zip(chain.strands, placed.parts, strict=True):
+            strand.add(placed, part, self._every, linear.jacobian, information, weighted.residual)
         return chain
 
     def _step(
@@ -218,9 +223,11 @@ class Problem:
 
     def _bend(self, chain: Chain, x: Array, weighted: Weighted, signed: bool) -> None:
         """Add the rows' own curvature to the normal equations: for the step, not for what is known."""
-        pair, jacobian, information = self.rows.bends(x, weighted.information, weighted.residual, signed)
-        parts = self._groups.split(self._placed.group[pair])
-        chain.add(self._placed, parts, pair, jacobian, information, np.zeros(len(pair)))
+        for strand, parts in zip(chain.strands, self._pairs, strict=True):
+            for part in parts:
+                bent = self.rows.bends(part, x, weighted.information, weighted.residual, signed)
+                every, nothing = np.arange(len(bent.pair)), np.zeros(len(bent.pair))
+                strand.add(self._placed, every, bent.pair, bent.jacobian, bent.information, nothing)
 
     def solve(
         self, x: Array, slacks_m: tuple[float, ...] = (), iterations: int = 20, resting: float = RESTING

@@ -7,8 +7,9 @@ Kirchhoff matrix of its part of the border. Cost grows with the length of the ch
 import numpy as np
 
 from estimator.graph.dense import Array, mended
-from estimator.graph.kernels import eliminate, selected_inverse, substitute
-from estimator.smoothing.groups import Group
+from estimator.graph.kernels import Integers, eliminate, selected_inverse, substitute
+from estimator.graph.scatter import scatter_rows
+from estimator.smoothing.groups import Group, Placed
 
 
 class Strand:
@@ -44,6 +45,29 @@ class Strand:
     def gradient(self) -> Array:
         """Of the keyframes, k × n."""
         return self.wide[:, :, -1]
+
+    def add(
+        self,
+        placed: Placed,
+        chosen: Integers,
+        row: Integers,
+        jacobian: Array,
+        information: Array,
+        residual: Array,
+    ) -> None:
+        """Add some of m rows.
+
+        Args:
+            placed: the readings.
+            chosen: which rows; their readings are the group's.
+            row: the reading that each row belongs to, m.
+            jacobian: derivatives, m × c.
+            information: P⁻¹, m.
+            residual: z − h(x), m.
+        """
+        blocks = self.diagonal, self.wide, self.corner, self.corner_gradient
+        at = placed.slab, placed.columns
+        scatter_rows(chosen, row, *at, jacobian, information, residual, *blocks)
 
     def damp(self, damping: float) -> None:
         """Raise the diagonal by a share of itself (Marquardt)."""

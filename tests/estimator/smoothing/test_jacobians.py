@@ -231,7 +231,7 @@ def test_distances_bend_as_their_jacobians_change(incident: Problem, seed: int) 
     weight = np.zeros(len(rows.slab))
     kinds = rows.pairs[:, 1]
     weight[:m] = np.abs(chance.normal(0.0, 1.0, m)) * np.select([kinds == RANGE, kinds == RSSI], [-1.0, 1.0])
-    pair, jacobian, information = rows.bends(x, np.ones(m), weight, True)
+    pair, jacobian, information = rows.bends(np.arange(m), x, np.ones(m), weight, True)
     each = np.array([spread_row(rows, r, j, incident) for r, j in zip(pair, jacobian, strict=True)])
     told = (each.T * information) @ each
     walked = np.arange(size).reshape(layout.length, -1, STATES)[:, :, :3].ravel()

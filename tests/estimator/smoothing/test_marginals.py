@@ -145,9 +145,8 @@ def test_groups_are_what_direct_readings_couple() -> None:
     found = [(g.walks.tolist(), g.lasting.tolist()) for g in groups.each]
     assert found == [([0, 2], [0]), ([1], [1]), ([], [0, 1, 2])]
     placed = groups.placed(np.zeros(4, dtype=np.int64), rows)
-    assert placed.group.tolist() == [0, 0, 1, 2]
     assert placed.columns[:, [0, 6]].tolist() == [[2, 8], [7, 12], [1, 6], [2, -1]]
-    assert [part.tolist() for part in groups.split(placed.group)] == [[0, 1], [2], [3]]
+    assert [part.tolist() for part in placed.parts] == [[0, 1], [2], [3]]
 
 
 def prior_at(problem: Problem, solved: Solved, cut: int) -> Prior:
