@@ -97,32 +97,36 @@ def scatter_rows(
         corner: s × s, changed.
         corner_gradient: s, changed.
     """
-    width, lasting = diagonal.shape[1], len(corner_gradient)
+    width, last = diagonal.shape[1], len(corner_gradient)
     most = columns.shape[1]
-    column, slope = np.empty(most, dtype=np.int64), np.empty(most)
+    moving, lasting = np.empty(most, dtype=np.uint64), np.empty(most, dtype=np.uint64)
+    by_moving, by_lasting = np.empty(most), np.empty(most)
     for r in chosen:
-        used, reading = 0, row[r]
+        m, s, reading = 0, 0, row[r]
         for a in range(most):
-            if columns[reading, a] >= 0 and jacobian[r, a] != 0.0:
-                column[used], slope[used] = columns[reading, a], jacobian[r, a]
-                used += 1
-        square, beside = diagonal[slab[reading]], wide[slab[reading]]
-        for a in range(used):
-            ca = column[a]
-            pulled = slope[a] * information[r]
-            if ca < width:
-                beside[ca, lasting] += pulled * residual[r]
-                for b in range(used):
-                    cb = column[b]
-                    if cb < width:
-                        square[ca, cb] += pulled * slope[b]
-                    else:
-                        beside[ca, cb - width] += pulled * slope[b]
+            at, slope = columns[reading, a], jacobian[r, a]
+            if at < 0 or slope == 0.0:
+                continue
+            if at < width:
+                moving[m], by_moving[m] = at, slope
+                m += 1
             else:
-                corner_gradient[ca - width] += pulled * residual[r]
-                for b in range(used):
-                    if column[b] >= width:
-                        corner[ca - width, column[b] - width] += pulled * slope[b]
+                lasting[s], by_lasting[s] = at - width, slope
+                s += 1
+        square, beside = diagonal[slab[reading]], wide[slab[reading]]
+        for a in range(m):
+            own, across = square[moving[a]], beside[moving[a]]
+            pulled = by_moving[a] * information[r]
+            across[last] += pulled * residual[r]
+            for b in range(m):
+                own[moving[b]] += pulled * by_moving[b]
+            for b in range(s):
+                across[lasting[b]] += pulled * by_lasting[b]
+        for a in range(s):
+            own, pulled = corner[lasting[a]], by_lasting[a] * information[r]
+            corner_gradient[lasting[a]] += pulled * residual[r]
+            for b in range(s):
+                own[lasting[b]] += pulled * by_lasting[b]
 
 
 @njit(cache=True)
