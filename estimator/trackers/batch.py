@@ -28,11 +28,11 @@ from estimator.trackers.base import TrackerSettings
 SLACKS_M = (3.0, 1.0, 0.3)
 LEARNING = (1.5, 1.0, 0.5)
 """How far the logarithms of noise variances may move, solution by solution."""
-LEARNING_RESTING = 0.01
+LEARNING_RESTING = 1.0
 """What a solution may leave of its log likelihood that is only learned from."""
 LONGEST_S = 86_400.0
 """No incident lasts longer: a reading farther than a day from the others has a wrong epoch."""
-RARER = 8.0
+RARER = 32.0
 """The first pass only finds where to start: its window is solved this many times more rarely."""
 LARGEST = 60_000_000
 """Numbers that the chain may hold: beyond it keyframes are set farther apart."""
@@ -94,22 +94,25 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     begins = state.ledger.table("begins")
     since_t = float(begins[:, 0].min()) if len(begins) else state.newest_t
     spacing = spacing_s(state, since_t, state.newest_t)
-    x = None
-    for most in (*LEARNING, None):
-        layout = Layout(state, since_t, spacing)
-        rows = Rows(layout, -math.inf)
-        rows.learn(state.noise)
-        problem = Problem(layout, rows, None)
-        if x is None:
-            solved = problem.solve(layout.start(), SLACKS_M, resting=LEARNING_RESTING)
-        elif most is not None:
-            solved = problem.solve(x, iterations=3, resting=LEARNING_RESTING)
-        else:
-            solved = problem.solve(x, iterations=10)
-        if most is not None:
-            learn(state, problem, solved, most)
-        x = solved.x
-    return problem, solved
+    layout = Layout(state, since_t, spacing)
+    rows = _rows(layout)
+    problem = Problem(layout, rows, None)
+    solved = problem.solve(layout.start(), SLACKS_M, resting=LEARNING_RESTING)
+    first, *later = LEARNING
+    learn(state, problem, solved, first)
+    for most in later:
+        problem = Problem(Layout(state, since_t, spacing), rows, None)
+        solved = problem.solve(solved.x, iterations=1)
+        learn(state, problem, solved, most)
+    layout = Layout(state, since_t, spacing)
+    problem = Problem(layout, _rows(layout), None)
+    return problem, problem.solve(solved.x)
+
+
+def _rows(layout: Layout) -> Rows:
+    rows = Rows(layout, -math.inf)
+    rows.learn(layout.state.noise)
+    return rows
 
 
 def spacing_s(state: FusionState, since_t: float, until_t: float) -> float:
