@@ -32,6 +32,8 @@ LEARNING_RESTING = 1.0
 """What a solution may leave of its log likelihood that is only learned from."""
 LONGEST_S = 86_400.0
 """No incident lasts longer: a reading farther than a day from the others has a wrong epoch."""
+TICK_S = 3.0
+"""The first pass only finds where to start: its ticks are longer than the online tracker's."""
 RARER = 32.0
 """The first pass only finds where to start: its window is solved this many times more rarely."""
 LARGEST = 60_000_000
@@ -128,7 +130,7 @@ def spacing_s(state: FusionState, since_t: float, until_t: float) -> float:
 
 
 def online_pass(readings: Sequence[AnyReading], settings: TrackerSettings) -> FusionState:
-    """Fold the readings once, in ticks of a second.
+    """Fold the readings once, in ticks of `TICK_S`.
 
     Args:
         readings: in canonical order.
@@ -138,12 +140,12 @@ def online_pass(readings: Sequence[AnyReading], settings: TrackerSettings) -> Fu
     state.ledger = Ledger(complete=True)
     start = 0
     while start < len(readings):
-        second = math.floor(readings[start].t) + 1
+        until_t = (math.floor(readings[start].t / TICK_S) + 1) * TICK_S
         end = start
-        while end < len(readings) and readings[end].t < second:
+        while end < len(readings) and readings[end].t < until_t:
             end += 1
-        fold_tick(state, float(second), readings[start:end])
-        keep_up(state, float(second), RARER)
+        fold_tick(state, until_t, readings[start:end])
+        keep_up(state, until_t, RARER)
         start = end
     flush(state)
     keep_poses(state)
@@ -151,10 +153,12 @@ def online_pass(readings: Sequence[AnyReading], settings: TrackerSettings) -> Fu
 
 
 def lifetimes(readings: Sequence[AnyReading]) -> dict[str, tuple[float, float]]:
-    """First and last epoch of each node's readings."""
-    found: dict[str, tuple[float, float]] = {}
+    """First and last epoch of each node's readings, which come in order of epoch."""
+    first: dict[str, float] = {}
+    last: dict[str, float] = {}
     for reading in readings:
         for name in names_of(reading):
-            first, last = found.get(name, (reading.t, reading.t))
-            found[name] = min(first, reading.t), max(last, reading.t)
-    return found
+            last[name] = reading.t
+            if name not in first:
+                first[name] = reading.t
+    return {name: (t, last[name]) for name, t in first.items()}
