@@ -32,8 +32,9 @@ LEARNING_RESTING = 1.0
 """What a solution may leave of its log likelihood that is only learned from."""
 LONGEST_S = 86_400.0
 """No incident lasts longer: a reading farther than a day from the others has a wrong epoch."""
-TICK_S = 3.0
-"""The first pass only finds where to start: its ticks are longer than the online tracker's."""
+TICK_S = 2.0
+"""The first pass only finds where to start: its ticks are longer than the online tracker's. In still longer
+ones a node moves too far for the noise that is learned on the way."""
 RARER = 32.0
 """The first pass only finds where to start: its window is solved this many times more rarely."""
 LARGEST = 60_000_000

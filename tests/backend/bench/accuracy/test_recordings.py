@@ -55,3 +55,8 @@ def test_a_walker_without_pdr_is_followed_by_ranges_alone(shared_data: Path, wal
 def test_among_obstructed_anchors_it_errs_half_as_much_as_a_fix_of_each_second(shared_data: Path) -> None:
     case = recording(shared_data, "labyrinth_uwb")
     assert rmse_m(case, "kirchhoff", "online") <= 0.5 * rmse_m(case, "least-squares", "online")
+
+
+def test_what_is_known_afterwards_makes_a_track_among_obstructed_anchors_no_worse(shared_data: Path) -> None:
+    case = recording(shared_data, "labyrinth_uwb")
+    assert rmse_m(case, "kirchhoff", "smoothed") <= rmse_m(case, "kirchhoff", "online")
