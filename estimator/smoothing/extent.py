@@ -11,7 +11,7 @@ from estimator.smoothing.walks import STATES
 
 SPACING_S = 4.0
 FREE_SPACING_S = 1.0
-LONGEST_S = 600.0
+LONGEST_S = 300.0
 SHORTEST_S = 60.0
 SLACK = 0.2
 """A window grows by this much of its length before its oldest keyframes go."""

@@ -40,7 +40,7 @@ CALM = 4.0
 """Periods after which the window is solved again though nothing has bent it."""
 SUSPENSE = 0.5
 """Periods after which it is solved again where a breadcrumb may lie elsewhere."""
-GONE = 4.0
+GONE = 8.0
 """A window this many times as long as it may be is begun anew."""
 ITERATIONS = 4
 RESTING = 0.1

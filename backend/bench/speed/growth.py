@@ -24,7 +24,7 @@ FLAT = 1.1
 FLAT_MIB = 10.0
 HEAD = """\
 growth: {} responders walk laps among {} breadcrumbs; displacement 1 Hz, {} RSSI a second each
-the window that is solved again grows until minute 11; from then on all has to stay as it is"""
+the window that is solved again grows until minute 6; from then on all has to stay as it is"""
 
 
 class Span(NamedTuple):
@@ -56,7 +56,7 @@ class Measured(NamedTuple):
 
 
 def spans(hours: float) -> list[Span]:
-    """Minute 2; minute 15, when the tracker's window of 10 minutes is full; the last hour."""
+    """Minute 2; minute 15, when the tracker's window of 5 minutes is full; the last hour."""
     end_s = 3600.0 * hours
     return [
         Span("minute 2", 60.0, 120.0),
