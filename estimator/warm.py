@@ -5,7 +5,7 @@ import numpy as np
 from estimator.fusion.descent import descend
 from estimator.fusion.free import free_motion
 from estimator.fusion.modes import Sought, find_modes
-from estimator.fusion.rows import FIELDS
+from estimator.fusion.rows import FIELDS, ONE
 from estimator.fusion.update import tally
 from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute
 from estimator.graph.kirchhoff import Kirchhoff
@@ -76,7 +76,7 @@ def _warm_filter() -> None:
     move(np.zeros((1, 6)), np.zeros((1, 3)), np.ones(1))
     free_motion("responder", 1.0)
     table = np.full((1, FIELDS), 0.5)
-    table[0, :2] = 0.0
+    table[0, :2] = ONE, 0.0
     found = descend(table, graph.information.copy(), graph.vector, graph.reference, 1)
     sums, told = np.zeros((1, 5)), (found.residual, found.predicted, found.good)
     tally(table, *told, np.zeros(1, dtype=np.bool_), np.zeros(1), sums)

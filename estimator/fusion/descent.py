@@ -8,7 +8,7 @@ from numba import njit
 from estimator.fusion.rows import OUTLIERS, SHIFT, SIGMA, SPREAD, WIDTH, columns_of, linearise
 from estimator.graph.dense import Array, Indices
 from estimator.graph.filter_kernels import factorised, forward, scatter, solved
-from estimator.graph.robust import weigh
+from estimator.graph.robust import mixture_cost, weigh
 
 BENT = 0.2
 """Curvature left alone: residuals that differ from their linear forecast by less, in standard deviations."""
@@ -115,11 +115,5 @@ def variances(columns: Indices, jacobian: Array, factor: Array, unscale: Array, 
 def misfit(table: Array, residual: Array, moved: Array, prior: Array, pull: Array) -> float:
     """Negative log likelihood of the mixture noise and the prior, up to a constant."""
     total = 0.5 * np.dot(moved, np.dot(prior, moved)) - np.dot(pull, moved)
-    for r in range(len(residual)):
-        good = table[r, SIGMA] ** 2
-        bad = good + table[r, SPREAD] ** 2
-        from_good = np.log1p(-table[r, OUTLIERS]) - 0.5 * (np.log(good) + residual[r] ** 2 / good)
-        off = residual[r] - table[r, SHIFT]
-        from_bad = np.log(table[r, OUTLIERS]) - 0.5 * (np.log(bad) + off**2 / bad)
-        total -= np.logaddexp(from_good, from_bad)
-    return float(total)
+    noise = table[:, OUTLIERS], table[:, SHIFT], table[:, SPREAD]
+    return float(total + mixture_cost(residual, table[:, SIGMA], *noise).sum())

@@ -9,9 +9,10 @@ from msgspec.structs import replace
 from estimator.fusion import physics
 from estimator.fusion.calibration import bias_sigma_m, narrow_sigma, scale_sigma
 from estimator.fusion.introduce import place
+from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.noise import Link, link_sigma
-from estimator.fusion.rows import BEARING, RANGE, RSSI, Row, Single
+from estimator.fusion.rows import Row, Single
 from estimator.fusion.state import FusionState
 from estimator.fusion.way import Way
 from estimator.graph.robust import Mixture
@@ -214,7 +215,7 @@ class Pairs:
                 return None
             extra, heading = state.graph.starts[a.unit] if a.mode == "unit" else -1, known
         sigma = max(reading.sigma_rad or physics.BEARING_SIGMA_RAD, physics.HEADING_FLOOR_RAD)
-        frame = 3.0 if reading.frame == "body" else 2.0
+        frame = BODY_BEARING if reading.frame == "body" else BEARING
         row = (a.index, b.index, reading.bearing_rad, sigma, state.source(""), heading, 1.0, -1.0)
         state.ledger.add("pairs", reading.t, frame, *row)
         from_a, from_b, t = self._way(a), self._way(b), reading.t
@@ -251,7 +252,7 @@ def enter(state: FusionState, a: NodeState, b: NodeState, t: float, told: Told) 
     if told.kind == RANGE and "unit" in (a.mode, b.mode):
         state.uncalibrated.setdefault(told.source, physics.UNCALIBRATED)
     row = (told.value, told.sigma, state.source(told.source), told.sent, link.alike, link.number)
-    state.ledger.add("pairs", t, 0.0 if told.kind == RANGE else 1.0, a.index, b.index, *row)
+    state.ledger.add("pairs", t, told.kind, a.index, b.index, *row)
     return link, key
 
 

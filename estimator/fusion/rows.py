@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from estimator.fusion.ledger import BEARING, RANGE, RSSI
 from estimator.graph.dense import Array, Indices
 from estimator.graph.robust import Mixture
 from estimator.graph.variable import Variable
@@ -15,7 +16,8 @@ from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 
-ONE, RANGE, RSSI, BEARING = range(4)
+ONE = -1
+"""Kind of a reading of one number; the others have the kinds of pairs in the ledger."""
 WIDTH = 8
 """Numbers that a reading depends on at most: two positions, and two states of a technology."""
 

@@ -7,7 +7,6 @@ from operator import attrgetter
 import numpy as np
 from msgspec.structs import replace
 
-from estimator.estimate import Notice
 from estimator.fusion import beginnings, free, held, introduce, motion, physics
 from estimator.fusion.rows import Single, table_of
 from estimator.fusion.state import FusionState
@@ -30,16 +29,13 @@ PAIRS = (Range, Rssi, Bearing)
 HELD = (Range, Rssi, Bearing, Position, Altitude, Pressure, Drop)
 
 
-def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyReading]) -> list[Notice]:
-    """Fold the readings of one tick into the state.
+def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyReading]) -> None:
+    """Fold the readings of one tick into the state; what is noticed stands in its `notices`.
 
     Args:
         state: changed in place.
         until_t: end of the tick, Unix seconds.
         readings: in canonical order (see `order`).
-
-    Returns:
-        What was noticed.
     """
     state.notices = []
     state.newest_t = max(state.newest_t, until_t)
@@ -70,7 +66,6 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyReading]
     for gone in retired:
         _retire(state, gone)
     keep_poses(state)
-    return state.notices
 
 
 def _covered(

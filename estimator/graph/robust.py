@@ -73,6 +73,7 @@ def weigh(
     return Weighted(information, pulled, good)
 
 
+@njit(cache=True, error_model="numpy")
 def mixture_cost(residual: Array, sigma: Array, outliers: Array, shift: Array, spread: Array) -> Array:
     """Negative log likelihood of each reading up to a constant: what `weigh` descends, m.
 
@@ -83,11 +84,14 @@ def mixture_cost(residual: Array, sigma: Array, outliers: Array, shift: Array, s
         shift: see `Mixture`, m.
         spread: see `Mixture`, m.
     """
-    good = sigma**2
-    bad = good + spread**2
-    from_good = np.log1p(-outliers) - 0.5 * (np.log(good) + residual**2 / good)
-    from_bad = np.log(outliers) - 0.5 * (np.log(bad) + (residual - shift) ** 2 / bad)
-    return -np.logaddexp(from_good, from_bad)
+    cost = np.empty(len(residual))
+    for i in range(len(residual)):
+        good = sigma[i] ** 2
+        bad = good + spread[i] ** 2
+        from_good = np.log1p(-outliers[i]) - 0.5 * (np.log(good) + residual[i] ** 2 / good)
+        from_bad = np.log(outliers[i]) - 0.5 * (np.log(bad) + (residual[i] - shift[i]) ** 2 / bad)
+        cost[i] = -np.logaddexp(from_good, from_bad)
+    return cost
 
 
 def cauchy_cost(residual: Array, scale: float) -> Array:

@@ -170,7 +170,7 @@ def _walked(layout: Layout, solved: Solved, across: Array, total: float) -> list
         own = slice(STATES * i, STATES * (i + 1))
         states = keyframes[walk.first : walk.last + 1, own]
         moved = states[1:] - np.matmul(motion.transition, states[:-1])
-        power = np.einsum("kic,kij,kjc->", moved, np.linalg.inv(motion.noise), moved) / total
+        power = np.einsum("kic,kij,kjc->", moved, motion.information, moved) / total
         times = layout.times[[walk.first, walk.last], i]
         sums = walk.way.between(times[:1], times[1:])[0]
         found.append(

@@ -9,7 +9,7 @@ from estimator.smoothing.layout import technology_key
 from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.walks import STATES
 
-SPACING_S = 4.0
+SPACING_S = 2.0
 FREE_SPACING_S = 1.0
 LONGEST_S = 300.0
 SHORTEST_S = 60.0

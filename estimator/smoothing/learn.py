@@ -65,7 +65,7 @@ def learn_walks(
         unsure = after + np.matmul(np.matmul(transition, before), transition.transpose(0, 2, 1))
         unsure -= carried + carried.transpose(0, 2, 1)
         outer = motion.residual[:, :, None] * motion.residual[:, None, :] + unsure
-        inverse = np.linalg.inv(motion.noise)
+        inverse = motion.information
         excess = np.matmul(np.matmul(inverse, outer - motion.noise), inverse)
         lever = transition[:, :2, 3]
         turn = motion.noise[:, 3, 3]

@@ -7,16 +7,14 @@ from hypothesis import strategies as st
 
 from estimator.fusion import physics
 from estimator.fusion.descent import BENT, HALVINGS, INDEFINITE, SOLVED, UNSOLVABLE, descend
+from estimator.fusion.ledger import BEARING, RANGE, RSSI
 from estimator.fusion.rows import (
     A_E,
     B_E,
-    BEARING,
     CONSTANT,
     KIND,
     ONE,
     OUTLIERS,
-    RANGE,
-    RSSI,
     SHIFT,
     SIGMA,
     SPREAD,
@@ -41,7 +39,7 @@ def some_table(chance: np.random.Generator, m: int) -> Array:
     """m readings of all kinds, some of them to a fixed end."""
     pairs, singles = [], []
     for _ in range(m):
-        kind = int(chance.integers(0, 4))
+        kind = int(chance.integers(ONE, BEARING + 1))
         if kind == ONE:
             value = float(chance.normal(0.0, 4.0))
             node = Variable("position", str(chance.integers(0, 2)))
