@@ -4,7 +4,8 @@ Physics leaves most of them a span. Some were chosen among what is plausible wit
 public sets plaza1, danis and hanyang, and the scenarios of `estimator.simulate`. Accuracy on these is
 therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M`, `SCALE_SIGMA`,
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
-`FLOOR_SIGMA`, `NEAR_SIGMA_DB` and `FREE_WAY_MPS`. M marks what estimation.md reports as measured.
+`FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `FREE_WAY_MPS`, `SLIP_M` and `SLIP_RARE`. M marks what estimation.md
+reports as measured.
 """
 
 from math import radians
@@ -31,6 +32,10 @@ BIAS_SIGMA_RADPS = radians(0.3)
 BIAS_WALK_RADPS_PER_ROOT_S = radians(0.001)
 SCALE_SIGMA = 0.02
 SCALE_WALK_PER_ROOT_S = 1e-5
+SLIP_M = 0.5
+"""A stumble, a wheel that spins, a standstill that is missed: half a metre along each horizontal axis."""
+SLIP_RARE = 5.0
+"""Log odds against a slip in one step between two keyframes: one in five minutes."""
 HEADING_SIGMA_RAD = 0.1
 TURNED_SIGMA_RAD = 0.6
 """A heading that is less sure than this is no small angle: it is tried all round."""

@@ -12,6 +12,7 @@ from msgspec.structs import replace
 from estimator.fusion.calibration import narrow_sigma, scale_sigma, uncalibrated
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
+from estimator.smoothing.slips import admit, find_slips, unsure
 from estimator.smoothing.solve import Problem, Solved
 
 SPREAD = 1.0
@@ -37,6 +38,10 @@ def learn(state: FusionState, problem: Problem, solved: Solved, step: float = ST
     solved.chain.solve()
     found, ahead, border = solved.chain.covariances()
     learn_walks(state, problem, solved, found, ahead, step)
+    if solved.rests:
+        slips = find_slips(problem, solved, found, ahead)
+        admit(state, slips)
+        state.due = state.due or bool(slips)
     calibrate(state, problem, solved.x, border)
     return found
 
@@ -59,15 +64,12 @@ def learn_walks(
         if walk.way is None or not len(motion.noise):
             continue
         now = slice(walk.first, walk.last)
-        before, after = found[now, i], found[walk.first + 1 : walk.last + 1, i]
-        carried = np.matmul(motion.transition, ahead[now, i])
-        transition = motion.transition
-        unsure = after + np.matmul(np.matmul(transition, before), transition.transpose(0, 2, 1))
-        unsure -= carried + carried.transpose(0, 2, 1)
-        outer = motion.residual[:, :, None] * motion.residual[:, None, :] + unsure
+        after = found[walk.first + 1 : walk.last + 1, i]
+        outer = motion.residual[:, :, None] * motion.residual[:, None, :]
+        outer += unsure(motion, found[now, i], after, ahead[now, i])
         inverse = motion.information
         excess = np.matmul(np.matmul(inverse, outer - motion.noise), inverse)
-        lever = transition[:, :2, 3]
+        lever = motion.transition[:, :2, 3]
         turn = motion.noise[:, 3, 3]
         by_turn = np.zeros_like(motion.noise)
         by_turn[:, 3, 3] = turn

@@ -43,6 +43,7 @@ class Solved(NamedTuple):
         weighted: how each row was weighed.
         motions: the walks' motion there.
         cost: negative log likelihood up to a constant.
+        rests: the last step promised next to nothing.
     """
 
     x: Array
@@ -51,6 +52,7 @@ class Solved(NamedTuple):
     weighted: Weighted
     motions: list[Motion]
     cost: float
+    rests: bool
 
 
 class There(NamedTuple):
@@ -245,7 +247,7 @@ class Problem:
         linear, motions = self.linearise(x), self.motions(x)
         self.rows.widen(x, linear.jacobian)
         cost = self.cost(x, linear.residual, motions)
-        damping, near = 0.0, False
+        damping, near, rests = 0.0, False, False
         for iteration in range(iterations):
             slack = slacks_m[iteration] if iteration < len(slacks_m) else 0.0
             step, promised = self._step(x, linear, motions, slack, damping, near and slack == 0.0)
@@ -264,11 +266,13 @@ class Problem:
             near = cost - there.cost < NEAR
             x, motions, cost = there.x, there.motions, there.cost
             linear = Linearised(self._jacobian(x), there.residual)
-            if slack == 0.0 and promised < resting and damping <= LEAST_DAMPING:
+            rests = slack == 0.0 and promised < resting and damping <= LEAST_DAMPING
+            if rests:
                 break
             damping = 0.1 * damping if damping > LEAST_DAMPING else 0.0
         weighted = self.weigh(linear.residual)
-        return Solved(x, self.assemble(x, linear, weighted, motions), linear, weighted, motions, cost)
+        chain = self.assemble(x, linear, weighted, motions)
+        return Solved(x, chain, linear, weighted, motions, cost, rests)
 
     def _there(self, x: Array) -> There:
         residual, motions = self.rows.residual(x), self.motions(x)

@@ -16,7 +16,7 @@ from estimator.measurements.node import Node
 from estimator.measurements.position import Position
 from estimator.smoothing import learn, walks
 from estimator.smoothing.solve import Solved
-from tests.estimator.smoothing.windows import dense, problem_of
+from tests.estimator.smoothing.windows import problem_of, unlikelihood
 
 FIX_M, FIX_S = 0.02, 2
 """Fixes at keyframes only: what a unit errs between a keyframe and a reading after it is not modelled."""
@@ -99,19 +99,6 @@ def test_from_far_off_both_factors_are_led_to_the_truth(
         assert right / 1.6 < learned < right * 1.6
 
 
-def unlikelihood(state: FusionState, factors: tuple[float, float], solved: Solved) -> float:
-    """−log marginal likelihood up to a constant, at a given estimate: cost + ½ log |H| + ½ Σ log |Q|."""
-    assume(state, factors)
-    problem = problem_of(state)
-    motions = problem.motions(solved.x)
-    chain = problem.assemble(solved.x, solved.linear, solved.weighted, motions)
-    matrix, _ = dense(chain)
-    scale = 1.0 / np.sqrt(np.diagonal(matrix))
-    half = float(np.log(np.diagonal(np.linalg.cholesky(matrix * scale * scale[:, None])) / scale).sum())
-    cost = problem.cost(solved.x, solved.linear.residual, motions)
-    return cost + half + 0.5 * sum(float(np.linalg.slogdet(m.noise)[1].sum()) for m in motions)
-
-
 def score_of(step: float, off: float) -> float:
     """The score that a step of 2 (score − off) / (1 + |score|) has been made from."""
     step = 0.5 * step
@@ -135,5 +122,6 @@ def test_steps_follow_the_derivative_of_the_marginal_likelihood(
         for change in (1e-3, -1e-3):
             there = list(factors)
             there[i] *= math.exp(change)
-            values.append(unlikelihood(state, (there[0], there[1]), solved))
+            assume(state, (there[0], there[1]))
+            values.append(unlikelihood(problem_of(state), solved))
         assert score == pytest.approx(-(values[0] - values[1]) / 2e-3, rel=1e-3, abs=1e-3)

@@ -71,3 +71,14 @@ def dense(chain: Chain) -> tuple[Array, Array]:
                 link = block_diag(*strand.link[j])
                 whole[np.ix_(own + width, own)], whole[np.ix_(own, own + width)] = link, link.T
     return whole, chain.slope()
+
+
+def unlikelihood(problem: Problem, solved: Solved) -> float:
+    """−log marginal likelihood up to a constant, at a given estimate: cost + ½ log |H| + ½ Σ log |Q|."""
+    motions = problem.motions(solved.x)
+    chain = problem.assemble(solved.x, solved.linear, solved.weighted, motions)
+    matrix, _ = dense(chain)
+    scale = 1.0 / np.sqrt(np.diagonal(matrix))
+    half = float(np.log(np.diagonal(np.linalg.cholesky(matrix * scale * scale[:, None])) / scale).sum())
+    cost = problem.cost(solved.x, solved.linear.residual, motions)
+    return cost + half + 0.5 * sum(float(np.linalg.slogdet(m.noise)[1].sum()) for m in motions)
