@@ -1,6 +1,6 @@
 """`bearing`: the direction in which one node sees another."""
 
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -27,6 +27,21 @@ class Bearing(PairReading, tag="bearing", frozen=True):
 NEAR_M = 0.3
 
 
+class Toward(NamedTuple):
+    """A predicted bearing (rad), and its derivatives by the position of `a` (rad/m); by `b` the other way."""
+
+    predicted: float
+    by_e: float
+    by_n: float
+
+
+@njit(cache=True)
+def bearing_at(east_m: float, north_m: float, heading_rad: float) -> Toward:
+    """One bearing of what lies so far away; see `predict_bearing`."""
+    squared = east_m * east_m + north_m * north_m + NEAR_M * NEAR_M
+    return Toward(np.arctan2(north_m, east_m) - heading_rad, north_m / squared, -east_m / squared)
+
+
 @njit(cache=True)
 def predict_bearing(a: Array, b: Array, heading_rad: Array) -> PairJacobian:
     """Horizontal direction of `b` from `a`, less the heading of `a`; by_extra: derivative by that heading.
@@ -42,11 +57,10 @@ def predict_bearing(a: Array, b: Array, heading_rad: Array) -> PairJacobian:
     predicted, by_a, by_b, by_extra = np.empty(m), np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 2))
     for i in range(m):
         e, n = b[i, 0] - a[i, 0], b[i, 1] - a[i, 1]
-        squared = e * e + n * n + NEAR_M * NEAR_M
-        by_b[i, 0], by_b[i, 1] = -n / squared, e / squared
-        by_a[i, 0], by_a[i, 1] = n / squared, -e / squared
-        by_extra[i, 0] = -1.0
-        predicted[i] = np.arctan2(n, e) - heading_rad[i]
+        found = bearing_at(e, n, heading_rad[i])
+        by_a[i, 0], by_a[i, 1] = found.by_e, found.by_n
+        by_b[i, 0], by_b[i, 1] = -found.by_e, -found.by_n
+        by_extra[i, 0], predicted[i] = -1.0, found.predicted
     return PairJacobian(predicted, by_a, by_b, by_extra)
 
 

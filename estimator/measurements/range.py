@@ -52,6 +52,29 @@ def range_slope(squared_m2: float, scale_error: float) -> float:
     return slope
 
 
+class Along(NamedTuple):
+    """A predicted reading of two ends, and its slopes: by `b` it has those by `a`, the other way.
+
+    Attributes:
+        predicted: h(x).
+        by_a: derivative by the position of `a`, less that of `b` (3): this many times it.
+        by_first: derivative by the first state of the technology.
+        by_second: derivative by the second one.
+    """
+
+    predicted: float
+    by_a: float
+    by_first: float
+    by_second: float
+
+
+@njit(cache=True)
+def range_at(squared_m2: float, scale_error: float, bias_m: float) -> Along:
+    """One range at ‖a − b‖² (m²); see `predict_range`."""
+    distance, scale = np.sqrt(squared_m2 + NEAR_M * NEAR_M), 1.0 + scale_error
+    return Along(scale * distance + bias_m, range_slope(squared_m2, scale_error), distance, 1.0)
+
+
 @njit(cache=True)
 def predict_range(a: Array, b: Array, scale_error: Array, bias_m: Array) -> PairJacobian:
     """Range that a technology with a scale and a bias of its own reports: (1 + k) ‖a − b‖ + c.
@@ -69,11 +92,9 @@ def predict_range(a: Array, b: Array, scale_error: Array, bias_m: Array) -> Pair
     predicted, by_a, by_b, by_extra = np.empty(m), np.empty((m, 3)), np.empty((m, 3)), np.ones((m, 2))
     for i in range(m):
         e, n, u = a[i, 0] - b[i, 0], a[i, 1] - b[i, 1], a[i, 2] - b[i, 2]
-        squared = e * e + n * n + u * u
-        distance, scale = np.sqrt(squared + NEAR_M * NEAR_M), 1.0 + scale_error[i]
-        along = range_slope(squared, scale_error[i])
+        found = range_at(e * e + n * n + u * u, scale_error[i], bias_m[i])
+        along = found.by_a
         by_a[i, 0], by_a[i, 1], by_a[i, 2] = e * along, n * along, u * along
         by_b[i, 0], by_b[i, 1], by_b[i, 2] = -e * along, -n * along, -u * along
-        by_extra[i, 0] = distance
-        predicted[i] = scale * distance + bias_m[i]
+        by_extra[i, 0], predicted[i] = found.by_first, found.predicted
     return PairJacobian(predicted, by_a, by_b, by_extra)

@@ -8,7 +8,7 @@ from numba import njit
 
 from estimator.graph.dense import Array
 from estimator.measurements.base import PairReading
-from estimator.measurements.range import PairJacobian
+from estimator.measurements.range import Along, PairJacobian
 
 PowerDbm = Annotated[float, Meta(ge=-200.0, le=100.0)]
 
@@ -37,6 +37,13 @@ def rssi_slope(squared_m2: float, exponent: float) -> float:
 
 
 @njit(cache=True)
+def rssi_at(squared_m2: float, power_dbm: float, exponent: float) -> Along:
+    """One power at ‖a − b‖² (m²); see `predict_rssi`."""
+    tens = 5.0 * np.log10(squared_m2 + ANTENNA_M * ANTENNA_M)
+    return Along(power_dbm - exponent * tens, rssi_slope(squared_m2, exponent), 1.0, -tens)
+
+
+@njit(cache=True)
 def predict_rssi(a: Array, b: Array, power_dbm: Array, exponent: Array) -> PairJacobian:
     """Received power by the log-distance law: P0 − 10 n log10 d, Gaussian in dB (estimation.md, point 4).
 
@@ -50,11 +57,9 @@ def predict_rssi(a: Array, b: Array, power_dbm: Array, exponent: Array) -> PairJ
     predicted, by_a, by_b, by_extra = np.empty(m), np.empty((m, 3)), np.empty((m, 3)), np.ones((m, 2))
     for i in range(m):
         e, n, u = a[i, 0] - b[i, 0], a[i, 1] - b[i, 1], a[i, 2] - b[i, 2]
-        squared = e * e + n * n + u * u
-        tens = 5.0 * np.log10(squared + ANTENNA_M * ANTENNA_M)
-        along = rssi_slope(squared, exponent[i])
+        found = rssi_at(e * e + n * n + u * u, power_dbm[i], exponent[i])
+        along = found.by_a
         by_a[i, 0], by_a[i, 1], by_a[i, 2] = e * along, n * along, u * along
         by_b[i, 0], by_b[i, 1], by_b[i, 2] = -e * along, -n * along, -u * along
-        by_extra[i, 1] = -tens
-        predicted[i] = power_dbm[i] - exponent[i] * tens
+        by_extra[i, 1], predicted[i] = found.by_second, found.predicted
     return PairJacobian(predicted, by_a, by_b, by_extra)

@@ -8,9 +8,9 @@ from numba import njit
 from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
-from estimator.measurements.bearing import predict_bearing
-from estimator.measurements.range import PairJacobian, predict_range, range_slope
-from estimator.measurements.rssi import ANTENNA_M, predict_rssi, rssi_slope
+from estimator.measurements.bearing import bearing_at
+from estimator.measurements.range import range_at, range_slope
+from estimator.measurements.rssi import ANTENNA_M, rssi_at, rssi_slope
 from estimator.smoothing.ends import FIXED, UNIT, Table, place_end, place_ends
 
 ANY = 14
@@ -62,34 +62,43 @@ class Bends(NamedTuple):
     information: Array
 
 
+class Seen(NamedTuple):
+    """What one pair should measure, and its derivatives: by `b` it has those by `a`, the other way."""
+
+    predicted: float
+    by_e: float
+    by_n: float
+    by_u: float
+    by_first: float
+    by_second: float
+
+
 @njit(cache=True)
-def predict_pairs(readings: Readings, a: Array, b: Array, x: Array) -> PairJacobian:
-    """What each pair should measure, with both ends at a and b, m × 3 each (m)."""
-    m = len(readings.kind)
-    predicted, by_a, by_b = np.empty(m), np.empty((m, 3)), np.empty((m, 3))
-    by_extra = np.empty((m, 2))
-    for kind in (RANGE, RSSI, BEARING, BODY_BEARING):
-        mine = np.flatnonzero(readings.kind == kind)
-        if len(mine) == 0:
-            continue
-        first, second = x[readings.extra[mine, 0]], x[readings.extra[mine, 1]]
-        if kind == RANGE:
-            found = predict_range(a[mine], b[mine], first, second)
-        elif kind == RSSI:
-            found = predict_rssi(a[mine], b[mine], first + readings.constant[mine], second)
-        else:
-            heading = np.zeros(len(mine))
-            if kind == BODY_BEARING:
-                for i in range(len(mine)):
-                    heading[i] = readings.constant[mine[i]]
-                    if readings.a.kind[mine[i]] == UNIT:
-                        heading[i] += x[readings.a.at[mine[i], 3]]
-            found = predict_bearing(a[mine], b[mine], heading)
-        for i in range(len(mine)):
-            row = mine[i]
-            predicted[row] = found.predicted[i]
-            by_a[row], by_b[row], by_extra[row] = found.by_a[i], found.by_b[i], found.by_extra[i]
-    return PairJacobian(predicted, by_a, by_b, by_extra)
+def see(kind: int, constant: float, first: float, second: float, a: Array, b: Array) -> Seen:
+    """One pair with its ends at a and b, 3 each (m).
+
+    Args:
+        kind: see `Readings`.
+        constant: see `Readings`; of a bearing, all that it counts from (rad).
+        first: first state of its technology.
+        second: second one.
+        a: where it was measured.
+        b: what was measured.
+    """
+    e, n, u = a[0] - b[0], a[1] - b[1], a[2] - b[2]
+    if kind >= BEARING:
+        found = bearing_at(-e, -n, constant)
+        return Seen(found.predicted, found.by_e, found.by_n, 0.0, -1.0, 0.0)
+    squared = e * e + n * n + u * u
+    along = range_at(squared, first, second) if kind == RANGE else rssi_at(squared, first + constant, second)
+    by_e, by_n, by_u = e * along.by_a, n * along.by_a, u * along.by_a
+    return Seen(along.predicted, by_e, by_n, by_u, along.by_first, along.by_second)
+
+
+@njit(cache=True)
+def counted_from(kind: int, constant: float, ends: Table, i: int, x: Array) -> float:
+    """The constant of one pair: of a bearing in the body frame, with the heading of its unit (rad)."""
+    return constant + x[ends.at[i, 3]] if kind == BODY_BEARING and ends.kind[i] == UNIT else constant
 
 
 @njit(cache=True)
@@ -105,8 +114,16 @@ def residuals(readings: Readings, x: Array) -> Array:
     """Residuals z − h(x) of all rows at an estimate x, flat; bearings not yet wrapped."""
     m, n, d = len(readings.kind), len(readings.axis), len(readings.by.kind)
     found = np.empty(m + n + 3 * d)
-    a, b = place_ends(readings.a, x), place_ends(readings.b, x)
-    found[:m] = readings.value - predict_pairs(readings, a.place, b.place, x).predicted
+    a, b, turned = np.empty(3), np.empty(3), np.zeros((3, 3))
+    # What is taken out of a tuple in the loop is counted in the loop.
+    ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
+    value, constants = readings.value, readings.constant
+    for i in range(m):
+        place_end(ends_a, i, x, a, turned)
+        place_end(ends_b, i, x, b, turned)
+        constant = counted_from(kinds[i], constants[i], ends_a, i, x)
+        seen = see(kinds[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
+        found[i] = value[i] - seen.predicted
     on = place_ends(readings.on, x)
     for i in range(n):
         axis = readings.axis[i]
@@ -124,18 +141,27 @@ def jacobians(readings: Readings, x: Array) -> Array:
     """Derivatives of all rows by what each depends on, at an estimate x, flat: 14 of each."""
     m, n, d = len(readings.kind), len(readings.axis), len(readings.by.kind)
     found = np.zeros((m + n + 3 * d, ANY))
-    a, b = place_ends(readings.a, x), place_ends(readings.b, x)
-    slopes = predict_pairs(readings, a.place, b.place, x)
+    a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
+    slope = np.empty(3)
+    ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
+    constants = readings.constant
     for i in range(m):
-        row, kind = found[i], readings.kind[i]
-        if readings.a.kind[i] != FIXED:
-            pull(slopes.by_a[i], a.turned[i], row[:6])
-        if readings.b.kind[i] != FIXED:
-            pull(slopes.by_b[i], b.turned[i], row[6:12])
+        kind = kinds[i]
+        by_a[:], by_b[:] = 0.0, 0.0
+        place_end(ends_a, i, x, a, by_a)
+        place_end(ends_b, i, x, b, by_b)
+        constant = counted_from(kind, constants[i], ends_a, i, x)
+        seen = see(kind, constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
+        if ends_a.kind[i] != FIXED:
+            slope[0], slope[1], slope[2] = seen.by_e, seen.by_n, seen.by_u
+            pull(slope, by_a, found[i, :6])
+        if ends_b.kind[i] != FIXED:
+            slope[0], slope[1], slope[2] = -seen.by_e, -seen.by_n, -seen.by_u
+            pull(slope, by_b, found[i, 6:12])
         if kind < BEARING:
-            row[12], row[13] = slopes.by_extra[i, 0], slopes.by_extra[i, 1]
-        elif kind == BODY_BEARING and readings.a.kind[i] == UNIT:
-            row[3] += slopes.by_extra[i, 0]
+            found[i, 12], found[i, 13] = seen.by_first, seen.by_second
+        elif kind == BODY_BEARING and ends_a.kind[i] == UNIT:
+            found[i, 3] += seen.by_first
     on = place_ends(readings.on, x)
     for i in range(n):
         row, axis = found[m + i], readings.axis[i]
