@@ -14,17 +14,39 @@ from estimator.smoothing.walks import STATES, lead
 FIXED, STANDING, UNIT, FREE, UNPLACED = range(5)
 
 
-def kinds_of(layout: Layout, numbers: Integers) -> Integers:
+class Nodes(NamedTuple):
+    """What each node of the ledger is in a window, by its number.
+
+    Attributes:
+        kind: one of those above, n.
+        walk: which of the window's walks, n; −1: none.
+        column: first of its three columns in the border, n; −1: none.
+        fixed_m: where it is, if it is fixed, n × 3 (m).
+    """
+
+    kind: Integers
+    walk: Integers
+    column: Integers
+    fixed_m: Array
+
+
+def nodes_of(layout: Layout) -> Nodes:
     """What each node is in the window."""
-    table = np.full(len(layout.state.owners) + 1, UNPLACED)
+    count = len(layout.state.owners) + 1
+    found = Nodes(
+        np.full(count, UNPLACED),
+        np.full(count, -1, dtype=np.int64),
+        np.full(count, -1, dtype=np.int64),
+        np.zeros((count, 3)),
+    )
     for node in layout.state.nodes.values():
         if node.place_m is not None and node.role == "base":
-            table[node.index] = FIXED
-    for number in layout.stands:
-        table[number] = STANDING
-    for walk in layout.walks:
-        table[walk.number] = FREE if walk.way is None else UNIT
-    return np.asarray(table[numbers])
+            found.kind[node.index], found.fixed_m[node.index] = FIXED, node.place_m
+    for number, start in layout.stands.items():
+        found.kind[number], found.column[number] = STANDING, start
+    for i, walk in enumerate(layout.walks):
+        found.kind[walk.number], found.walk[walk.number] = FREE if walk.way is None else UNIT, i
+    return found
 
 
 class Table(NamedTuple):
@@ -97,6 +119,79 @@ def place_ends(ends: Table, x: Array) -> Places:
     return Places(place, turned)
 
 
+class Stood(NamedTuple):
+    """Between which numbers m ends of readings are; see `Ends`.
+
+    Attributes:
+        kind: what node each is of, m.
+        slab: keyframe of each, m.
+        columns: its columns, m × 6.
+        flat: where they are in the flat unknowns, m × 6; 0 where there is none.
+        fixed_m: where it is, if it is fixed, m × 3 (m).
+        since_t: epoch of its keyframe, if it moves, m (s).
+        usable: m.
+    """
+
+    kind: Integers
+    slab: Integers
+    columns: Integers
+    flat: Integers
+    fixed_m: Array
+    since_t: Array
+    usable: NDArray[np.bool_]
+
+
+@njit(cache=True)
+def stand(
+    nodes: Nodes,
+    numbers: Integers,
+    t: Array,
+    nearest: NDArray[np.bool_],
+    grid: Array,
+    times: Array,
+    lives: Integers,
+) -> Stood:
+    """Where ends of readings belong in the unknowns of a window.
+
+    Args:
+        nodes: what each node is.
+        numbers: the node of each end, m.
+        t: epochs, m (s).
+        nearest: of a moving node, the nearest keyframe; else the one before, m.
+        grid: epochs of the keyframes, k (s).
+        times: those of each walk, k × walks (s).
+        lives: first and last keyframe of each walk, walks × 2.
+    """
+    m, length, width = len(numbers), len(grid), STATES * len(lives)
+    kind, slab, since = np.empty(m, dtype=np.int64), np.zeros(m, dtype=np.int64), t.copy()
+    columns, flat = np.full((m, STATES), -1), np.zeros((m, STATES), dtype=np.int64)
+    fixed, usable = np.zeros((m, 3)), np.empty(m, dtype=np.bool_)
+    kinds, walks, starts, places = nodes.kind, nodes.walk, nodes.column, nodes.fixed_m
+    for i in range(m):
+        number = numbers[i]
+        kind[i], walk = kinds[number], walks[number]
+        usable[i] = kind[i] != UNPLACED
+        if kind[i] == FIXED:
+            fixed[i] = places[number]
+        elif kind[i] == STANDING:
+            for c in range(3):
+                columns[i, c] = width + starts[number] + c
+                flat[i, c] = length * width + starts[number] + c
+        elif usable[i]:
+            first, last = lives[walk, 0], lives[walk, 1]
+            at = np.searchsorted(grid, t[i], side="right") - 1
+            around = min(max(at, 0), length - 2)
+            if nearest[i] and t[i] - grid[around] > grid[around + 1] - t[i]:
+                at = around + 1
+            at = min(max(at, first), last)
+            usable[i] = t[i] >= times[first, walk] - 1e-6
+            slab[i], since[i] = at, times[at, walk]
+            for c in range(STATES):
+                columns[i, c] = STATES * walk + c
+                flat[i, c] = at * width + columns[i, c]
+    return Stood(kind, slab, columns, flat, fixed, since, usable)
+
+
 class Ends:
     """m ends of readings.
 
@@ -109,60 +204,46 @@ class Ends:
         table: what its place follows from.
     """
 
-    def __init__(self, layout: Layout, numbers: Integers, t: Array, nearest: Array) -> None:
-        m = len(numbers)
-        kinds = kinds_of(layout, numbers)
-        self.slab = np.zeros(m, dtype=np.int64)
-        self.columns = np.full((m, STATES), -1, dtype=np.int64)
-        self.usable = kinds != UNPLACED
+    def __init__(
+        self,
+        layout: Layout,
+        numbers: Integers,
+        t: Array,
+        nearest: NDArray[np.bool_],
+        nodes: Nodes | None = None,
+    ) -> None:
+        m, numbers, t = len(numbers), np.ascontiguousarray(numbers), np.ascontiguousarray(t)
+        lives = np.array([(w.first, w.last) for w in layout.walks], dtype=np.int64).reshape(-1, 2)
+        known = nodes_of(layout) if nodes is None else nodes
+        stood = stand(known, numbers, t, nearest, layout.grid, layout.times, lives)
+        self.slab, self.columns, self.usable = stood.slab, stood.columns, stood.usable
         self.unsure_m2: Array = np.zeros((m, 3))
-        fixed_m, delta_m, moment, duration_s = (
-            np.zeros((m, 3)),
-            np.zeros((m, 3)),
-            np.zeros((m, 3)),
-            np.zeros(m),
-        )
-        names = layout.state.owners
-        for number in np.unique(numbers[kinds == FIXED]).tolist():
-            fixed_m[numbers == number] = layout.state.nodes[names[number]].place_m
-        for number in np.unique(numbers[kinds == STANDING]).tolist():
-            self.columns[numbers == number, :3] = layout.width + layout.stands[number] + np.arange(3)
-        preceding = np.searchsorted(layout.grid, t, side="right") - 1
-        around = np.clip(preceding, 0, layout.length - 2)
-        closer = (t - layout.grid[around] > layout.grid[around + 1] - t) & nearest.astype(bool)
-        keyframe = np.where(closer, around + 1, preceding)
-        for i, walk in enumerate(layout.walks):
+        delta_m, moment = np.zeros((m, 3)), np.zeros((m, 3))
+        for walk in layout.walks:
             mine = np.flatnonzero(numbers == walk.number)
-            if len(mine) == 0:
-                continue
-            epochs = t[mine]
-            at = np.clip(keyframe[mine], walk.first, walk.last)
-            since = layout.times[at, i]
-            self.usable[mine] &= epochs >= layout.times[walk.first, i] - 1e-6
-            self.slab[mine] = at
-            self.columns[mine] = STATES * i + np.arange(STATES)
-            duration_s[mine] = epochs - since
-            if walk.way is not None:
-                found = walk.way.between(since, epochs)
+            if walk.way is not None and len(mine):
+                found = walk.way.between(stood.since_t[mine], t[mine])
                 delta_m[mine], moment[mine] = found[:, :3], found[:, 3:6]
                 self.unsure_m2[mine] = np.abs(found[:, [6, 6, 7]])
-        self.moving = (kinds == UNIT) | (kinds == FREE)
-        border = layout.length * layout.width + self.columns - layout.width
-        flat = np.where(self.columns < layout.width, self.slab[:, None] * layout.width + self.columns, border)
-        flat[self.columns < 0] = 0
-        self.table = Table(kinds, flat, fixed_m, delta_m, moment, duration_s)
+        self.moving = (stood.kind == UNIT) | (stood.kind == FREE)
+        self.table = Table(stood.kind, stood.flat, stood.fixed_m, delta_m, moment, t - stood.since_t)
 
     @property
     def unit(self) -> NDArray[np.bool_]:
         """Whether each is of a node with a PDR unit, m."""
         return np.asarray(self.table.kind == UNIT)
 
-    def take(self, chosen: Array) -> None:
+    def take(self, chosen: NDArray[np.bool_]) -> None:
         """Keep only some of the ends.
 
         Args:
-            chosen: which, m (bool).
+            chosen: which, m.
         """
+        if chosen.all():
+            return
         self.slab, self.columns, self.usable = self.slab[chosen], self.columns[chosen], self.usable[chosen]
         self.moving, self.unsure_m2 = self.moving[chosen], self.unsure_m2[chosen]
-        self.table = Table(*(numbers[chosen] for numbers in self.table))
+        kind, at, fixed_m, delta_m, moment, duration_s = self.table
+        self.table = Table(
+            kind[chosen], at[chosen], fixed_m[chosen], delta_m[chosen], moment[chosen], duration_s[chosen]
+        )

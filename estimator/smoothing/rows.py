@@ -11,7 +11,7 @@ from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import wrap
 from estimator.smoothing.encounters import candidates, near_dbm
-from estimator.smoothing.ends import UNIT, Ends, kinds_of, place_ends
+from estimator.smoothing.ends import UNIT, Ends, nodes_of, place_ends
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.linear import ANY, Bends, Readings, bends, jacobians, residuals
 
@@ -49,7 +49,7 @@ class Rows:
     """
 
     def __init__(self, layout: Layout, since_t: float) -> None:
-        self._layout = layout
+        self._layout, self._nodes = layout, nodes_of(layout)
         self._pairs(layout, since_t)
         self._singles(layout, since_t)
         self._drops(layout, since_t)
@@ -98,8 +98,8 @@ class Rows:
         pairs = layout.state.ledger.table("pairs")
         pairs = pairs[pairs[:, 0] >= since_t]
         numbers = pairs[:, 2:4].astype(np.int64)
-        unit = (kinds_of(layout, numbers[:, 0]) == UNIT) | (kinds_of(layout, numbers[:, 1]) == UNIT)
-        a, b = (Ends(layout, numbers[:, i], pairs[:, 0], ~unit) for i in (0, 1))
+        unitless = (self._nodes.kind[numbers] != UNIT).all(axis=1)
+        a, b = (Ends(layout, numbers[:, i], pairs[:, 0], unitless, self._nodes) for i in (0, 1))
         extra = np.full((len(pairs), 2), -1, dtype=np.int64)
         for (kind, source), start in layout.technologies.items():
             mine = (pairs[:, 1] == (RANGE if kind == "range" else RSSI)) & (pairs[:, 6] == source)
@@ -124,7 +124,7 @@ class Rows:
         singles = layout.state.ledger.table("singles")
         singles = singles[singles[:, 0] >= since_t]
         nothing = np.zeros(len(singles), dtype=bool)
-        on = Ends(layout, singles[:, 1].astype(np.int64), singles[:, 0], nothing)
+        on = Ends(layout, singles[:, 1].astype(np.int64), singles[:, 0], nothing, self._nodes)
         chosen = on.usable & (on.columns[:, 0] >= 0)
         on.take(chosen)
         self.singles: Array = singles[chosen]
@@ -134,8 +134,8 @@ class Rows:
         drops = layout.state.ledger.table("drops")
         drops = drops[drops[:, 0] >= since_t]
         nothing = np.zeros(len(drops), dtype=bool)
-        by = Ends(layout, drops[:, 2].astype(np.int64), drops[:, 0], nothing)
-        crumb = Ends(layout, drops[:, 1].astype(np.int64), drops[:, 0], nothing)
+        by = Ends(layout, drops[:, 2].astype(np.int64), drops[:, 0], nothing, self._nodes)
+        crumb = Ends(layout, drops[:, 1].astype(np.int64), drops[:, 0], nothing, self._nodes)
         chosen = by.usable & crumb.usable
         by.take(chosen)
         crumb.take(chosen)

@@ -49,17 +49,6 @@ class Way:
         self._marks = np.concatenate([[begin_t], t])
         self._sums = np.concatenate([np.zeros((1, each.shape[1])), np.cumsum(each, axis=0)])
 
-    def at(self, t: Array) -> Array:
-        """Sums up to epochs `t`, m × 12: displacement 3, its first moment 3, variances 5, length."""
-        inside = np.clip(t, self._marks[0], self._marks[-1])
-        right = np.clip(np.searchsorted(self._marks, inside, side="right"), 1, len(self._marks) - 1)
-        left = right - 1
-        if len(self._marks) == 1:
-            return np.zeros((len(t), self._sums.shape[1]))
-        span = self._marks[right] - self._marks[left]
-        share = np.where(span > 0.0, (inside - self._marks[left]) / np.where(span > 0.0, span, 1.0), 1.0)
-        return np.asarray(self._sums[left] + share[:, None] * (self._sums[right] - self._sums[left]))
-
     def bridged(self, t: Array) -> Array:
         """Variance of where it was at `t`, m (m²), inside a displacement over a long time.
 
@@ -77,13 +66,48 @@ class Way:
 
     def between(self, since: Array, until: Array) -> Array:
         """What lies between epochs, m × 12, moments from `since` on; silence adds a random walk."""
-        found = self.at(until) - self.at(since)
-        found[:, 3:6] -= found[:, :3] * (since - self._begin)[:, None]
+        found = sums_between(self._begin, self._marks, self._sums, since, until)
         silent = np.clip(until - np.maximum(since, self._marks[-1]), 0.0, LONGEST_S)
         wander = physics.SILENT_M_PER_ROOT_S**2 * silent
         found[:, 6] += wander
         found[:, 7] += 0.1 * wander
         return np.asarray(found)
+
+
+@njit(cache=True)
+def sum_up_to(marks: Array, sums: Array, t: float, found: Array) -> None:
+    """Sums of a way up to one epoch, 12: displacement 3, its first moment 3, variances 5, length.
+
+    Args:
+        marks: epochs at which displacements end, ascending; before them that at which the first one began.
+        sums: up to each of them.
+        t: the epoch.
+        found: takes the sums.
+    """
+    inside, last = min(max(t, marks[0]), marks[-1]), len(marks) - 1
+    right = min(max(np.searchsorted(marks, inside, side="right"), 1), last)
+    if last == 0:
+        found[:] = 0.0
+        return
+    span = marks[right] - marks[right - 1]
+    share = (inside - marks[right - 1]) / span if span > 0.0 else 1.0
+    for c in range(len(found)):
+        found[c] = sums[right - 1, c] + share * (sums[right, c] - sums[right - 1, c])
+
+
+@njit(cache=True)
+def sums_between(begin_t: float, marks: Array, sums: Array, since: Array, until: Array) -> Array:
+    """What a way's displacements say of it between epochs, m × 12, moments from `since` on."""
+    m, size = len(since), sums.shape[1]
+    found, before = np.empty((m, size)), np.empty(size)
+    for i in range(m):
+        sum_up_to(marks, sums, since[i], before)
+        sum_up_to(marks, sums, until[i], found[i])
+        for c in range(size):
+            found[i, c] -= before[c]
+        for c in range(3):
+            found[i, 3 + c] -= found[i, c] * (since[i] - begin_t)
+    return found
 
 
 class Motion(NamedTuple):
