@@ -80,11 +80,16 @@ def _covered(
         gone: nodes that retire in this tick: nothing waits for them.
     """
     units = {n.node: n.pose_t + SAME_EPOCH_S for n in state.nodes.values() if n.mode == "unit"}
+    soonest = min(units.values(), default=math.inf)
     ready: list[AnyReading] = []
     waiting: list[AnyReading] = []
     for reading in readings:
-        t, names = reading.t, names_of(reading)
-        wait = t >= late_t and t > min(units.get(name, math.inf) for name in names)
+        t = reading.t
+        if t <= soonest or t < late_t:
+            ready.append(reading)
+            continue
+        names = names_of(reading)
+        wait = t > min(units.get(name, math.inf) for name in names)
         (waiting if wait and gone.isdisjoint(names) else ready).append(reading)
     state.waiting = tuple(waiting)
     return ready
@@ -134,12 +139,12 @@ def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Sing
 
 
 def _newest(readings: Sequence[AnyReading]) -> dict[str, float]:
-    """The newest epoch at which something is held against each node."""
+    """The newest epoch at which something is held against each node; readings are in order of epoch."""
     until: dict[str, float] = {}
     for reading in readings:
+        t = reading.t
         for name in names_of(reading):
-            if reading.t > until.get(name, -1.0):
-                until[name] = reading.t
+            until[name] = t
     return until
 
 
@@ -207,17 +212,17 @@ def _drop(state: FusionState, reading: Drop) -> None:
 def _pair(state: FusionState, pairs: held.Pairs, reading: Range | Rssi | Bearing) -> None:
     a = state.node_of(reading.a, "breadcrumb", reading.t)
     b = state.node_of(reading.b, "breadcrumb", reading.t)
-    if "retired" in (a.mode, b.mode):
-        node, other = (a, b) if a.mode == "retired" else (b, a)
-        text = f"{node.node} is retired: what {other.node} measures to it is set aside"
-        state.say("conflict", reading.t, node.node, text, once=f"pair with retired {node.node}")
-        state.count("not_fused")
-        return
     if a.decided and b.decided:
         if a.mode == "fixed" and b.mode == "fixed":
             state.count("not_fused")
         else:
             pairs.take(a, b, reading)
+        return
+    if "retired" in (a.mode, b.mode):
+        node, other = (a, b) if a.mode == "retired" else (b, a)
+        text = f"{node.node} is retired: what {other.node} measures to it is set aside"
+        state.say("conflict", reading.t, node.node, text, once=f"pair with retired {node.node}")
+        state.count("not_fused")
         return
     undecided, other = (b, a) if a.decided else (a, b)
     moving = other.moving and undecided.role in MOVING_ROLES
