@@ -147,20 +147,21 @@ class Lag:
 
     def _thin(self, newest: int) -> None:
         """Leave checkpoints out as they age; the two newest always stay."""
-        kept = self._checkpoints[-2:]
-        buckets: set[tuple[float, int]] = set()
-        thinned = []
-        for tick, state in self._checkpoints[:-2]:
+        now, before = end_of(newest), (0.0, 0.0)
+        thinned: list[tuple[int, FusionState]] = []
+        for i, (tick, state) in enumerate(self._checkpoints):
             end = end_of(tick)
-            age = end_of(newest) - end
-            _, spacing = SPACING_S[bisect_left(SPACING_S, (age, 0.0))]
-            bucket = (spacing, tick if spacing == 0.0 else int(end // spacing))
+            _, spacing = SPACING_S[bisect_left(SPACING_S, (now - end, 0.0))]
+            if spacing == 0.0 or i >= len(self._checkpoints) - 2:
+                thinned += self._checkpoints[i:]
+                break
+            bucket = (spacing, end // spacing)
             # The oldest of each bucket stays, so that what has grown old enough to be thinned is not lost
             # again.
-            if bucket not in buckets:
-                buckets.add(bucket)
+            if bucket != before:
+                before = bucket
                 thinned.append((tick, state))
-        self._checkpoints = thinned + kept
+        self._checkpoints = thinned
 
     def _commit(self) -> None:
         """Forget readings that nothing can come before any more, and the checkpoints under them."""
