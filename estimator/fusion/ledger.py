@@ -1,6 +1,7 @@
 """What has been fused, as tables of numbers: what a window or a whole incident is solved again from."""
 
 from collections.abc import Sequence
+from itertools import chain
 from typing import Literal, Self
 
 import numpy as np
@@ -60,7 +61,9 @@ class Ledger:
         """Close the open rows to chunks: what has been added until now."""
         for name, rows in self._open.items():
             if rows:
-                self.chunks[name] = (*self.chunks[name], np.array(rows, dtype=np.float64))
+                width = len(COLUMNS[name])
+                told = np.fromiter(chain.from_iterable(rows), np.float64, len(rows) * width)
+                self.chunks[name] = (*self.chunks[name], told.reshape(-1, width))
                 rows.clear()
                 if len(self.chunks[name]) > MERGED:
                     self.chunks[name] = (np.concatenate(self.chunks[name]),)
