@@ -45,7 +45,7 @@ class Chain:
         self.width = sum(len(group.columns) for group in groups)
         self.lasting = len(groups[-1].lasting)
         self._length = length
-        self._covariance: Array = np.zeros((self.lasting, self.lasting))
+        self._cholesky = factorise(np.zeros((0, 0)))
 
     def damp(self, damping: float) -> None:
         """Raise the diagonal by a share of itself (Marquardt): a shorter step, and more along the slope."""
@@ -65,7 +65,7 @@ class Chain:
         corner, gradient = np.zeros((self.lasting, self.lasting)), np.zeros(self.lasting)
         for strand in self.strands:
             lasting = strand.group.lasting
-            corner[np.ix_(lasting, lasting)] += strand.corner
+            corner[lasting[:, None], lasting] += strand.corner
             gradient[lasting] += strand.corner_gradient
         return corner, gradient
 
@@ -83,9 +83,9 @@ class Chain:
         for strand in self.strands:
             strand.eliminate(keyframe)
             own, rest = strand.group.columns, self.width + strand.group.lasting
-            matrix[np.ix_(own, own)] = strand.diagonal[keyframe]
-            matrix[np.ix_(own, rest)] = strand.border[keyframe]
-            matrix[np.ix_(rest, own)] = strand.border[keyframe].T
+            matrix[own[:, None], own] = strand.diagonal[keyframe]
+            matrix[own[:, None], rest] = strand.border[keyframe]
+            matrix[rest[:, None], own] = strand.border[keyframe].T
             vector[own] = strand.gradient[keyframe]
         matrix[self.width :, self.width :], vector[self.width :] = self._corner()
         return Remainder(0.5 * (matrix + matrix.T), vector)
@@ -103,13 +103,12 @@ class Chain:
             strand.eliminate(self._length, mend)
         corner, gradient = self._corner()
         try:
-            cholesky = factorise(corner)
+            self._cholesky = factorise(corner)
         except ValueError:
             if not mend:
                 raise
-            cholesky = factorise(mended(corner))
-        self._covariance = inverse(cholesky)
-        fixed = solve(cholesky, gradient)
+            self._cholesky = factorise(mended(corner))
+        fixed = solve(self._cholesky, gradient)
         steps = np.zeros((self._length, self.width))
         for strand in self.strands:
             steps[:, strand.group.columns] = strand.substitute(fixed[strand.group.lasting])
@@ -128,7 +127,7 @@ class Chain:
             strand.forth(y, own)
             rest[strand.group.lasting] += own
             carried.append(y)
-        fixed: Array = self._covariance @ rest
+        fixed: Array = inverse(self._cholesky) @ rest
         found = np.zeros(right.shape)
         for strand, y in zip(self.strands, carried, strict=True):
             strand.back(y, fixed[strand.group.lasting])
@@ -142,6 +141,7 @@ class Chain:
             Of each walk at each keyframe, k × walks × b × b; of each with itself at the next keyframe,
             (k − 1) × walks × b × b; of the border, s × s.
         """
+        border = inverse(self._cholesky)
         walks = sum(len(strand.group.walks) for strand in self.strands)
         size = self.width // max(walks, 1)
         found = np.zeros((self._length, walks, size, size))
@@ -149,5 +149,5 @@ class Chain:
         for strand in self.strands:
             own, lasting = strand.group.walks, strand.group.lasting
             if len(own):
-                found[:, own], ahead[:, own] = strand.covariances(self._covariance[np.ix_(lasting, lasting)])
-        return found, ahead, self._covariance
+                found[:, own], ahead[:, own] = strand.covariances(border[np.ix_(lasting, lasting)])
+        return found, ahead, border
