@@ -1,13 +1,38 @@
 """What has left the window, laid on its unknowns: the prior of its first keyframe and of the border."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from estimator.fusion.prior import Key, Prior
 from estimator.graph.dense import Array, Indices
 from estimator.graph.kernels import Integers
 from estimator.smoothing.chain import Chain
+from estimator.smoothing.groups import Group
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.walks import STATES
+
+
+class Shared(NamedTuple):
+    """What a prior tells of one group of walks.
+
+    Attributes:
+        moving: which of the prior's numbers are of its keyframe.
+        lasting: which are of its border.
+        own: which columns of its keyframe those are.
+        rest: which columns of its border.
+        diagonal: the prior's matrix of its keyframe.
+        border: that of its keyframe by its border.
+        corner: that of its border.
+    """
+
+    moving: Indices
+    lasting: Indices
+    own: Indices
+    rest: Indices
+    diagonal: Array
+    border: Array
+    corner: Array
 
 
 class Carried:
@@ -24,6 +49,7 @@ class Carried:
         columns = [_columns(layout, key) for key in prior.keys]
         self._at = np.concatenate(columns or [np.zeros(0, dtype=np.intp)]).astype(np.intp)
         self._kept = np.flatnonzero(self._at >= 0)
+        self._shared: list[Shared] = []
 
     def first(self, x: Array) -> Array:
         """The estimate with the border where the prior was linearised, flat."""
@@ -42,23 +68,37 @@ class Carried:
         """Pairs of columns that it ties together, m × 2, as `groups.Groups` takes them."""
         at = self._at[self._kept]
         tied = np.argwhere(self._prior.matrix[np.ix_(self._kept, self._kept)] != 0.0)
-        return np.where(at < self._size, at, at - self._size + self._width)[tied].astype(np.int64)
+        columns = np.where(at < self._size, at, at - self._size + self._width)[tied]
+        return np.ascontiguousarray(columns, dtype=np.int64)
 
     def add(self, chain: Chain, x: Array) -> None:
-        """Add it to the normal equations at an estimate, flat."""
-        matrix, at = self._prior.matrix, self._at
-        vector = self._prior.vector - matrix @ self._moved(x)
-        for strand in chain.strands:
-            group = strand.group
-            moving, own = _common(at, group.columns)
-            lasting, rest = _common(at - self._size, group.lasting)
-            if len(group.walks):
-                strand.diagonal[0][np.ix_(own, own)] += matrix[np.ix_(moving, moving)]
-                strand.border[0][np.ix_(own, rest)] += matrix[np.ix_(moving, lasting)]
-                strand.gradient[0][own] += vector[moving]
+        """Add it to the normal equations at an estimate, flat; the chain always has the same groups."""
+        vector = self._prior.vector - self._prior.matrix @ self._moved(x)
+        if not self._shared:
+            self._shared = [self._shared_with(strand.group) for strand in chain.strands]
+        for strand, shared in zip(chain.strands, self._shared, strict=True):
+            own, rest = shared.own, shared.rest
+            if len(strand.group.walks):
+                strand.diagonal[0][own[:, None], own] += shared.diagonal
+                strand.border[0][own[:, None], rest] += shared.border
+                strand.gradient[0][own] += vector[shared.moving]
             else:
-                strand.corner[np.ix_(rest, rest)] += matrix[np.ix_(lasting, lasting)]
-                strand.corner_gradient[rest] += vector[lasting]
+                strand.corner[rest[:, None], rest] += shared.corner
+                strand.corner_gradient[rest] += vector[shared.lasting]
+
+    def _shared_with(self, group: Group) -> Shared:
+        matrix = self._prior.matrix
+        moving, own = _common(self._at, group.columns)
+        lasting, rest = _common(self._at - self._size, group.lasting)
+        return Shared(
+            moving,
+            lasting,
+            own,
+            rest,
+            matrix[np.ix_(moving, moving)],
+            matrix[np.ix_(moving, lasting)],
+            matrix[np.ix_(lasting, lasting)],
+        )
 
     def _moved(self, x: Array) -> Array:
         moved = np.zeros(len(self._at))
