@@ -8,6 +8,8 @@ from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 
+AXES = np.arange(3)
+UPPER = np.triu_indices(3)
 MOVING_MPS = 0.3
 """Below it a velocity tells no heading."""
 
@@ -19,11 +21,19 @@ def estimates(state: FusionState, covariance: Array) -> list[NodeEstimate]:
         state: the fusion.
         covariance: Σ of its graph, n × n.
     """
-    return [_estimate(state, node, covariance) for node in state.nodes.values()]
+    held = [node for node in state.nodes.values() if node.place_m is None and node.decided]
+    rows = np.array([state.graph.starts[node.position] for node in held], dtype=np.intp)[:, None] + AXES
+    # All blocks are taken out at once: a call for each costs more than what it takes out.
+    blocks = covariance[rows[:, UPPER[0]], rows[:, UPPER[1]]].tolist()
+    places = zip(state.graph.reference[rows].tolist(), blocks, strict=True)
+    found = {node.node: place for node, place in zip(held, places, strict=True)}
+    return [_estimate(state, node, covariance, found.get(node.node)) for node in state.nodes.values()]
 
 
-def _estimate(state: FusionState, node: NodeState, covariance: Array) -> NodeEstimate:
-    if node.place_m is not None or not node.decided:
+def _estimate(
+    state: FusionState, node: NodeState, covariance: Array, place: tuple[list[float], list[float]] | None
+) -> NodeEstimate:
+    if place is None:
         known = (0.0,) * 6 if node.mode == "fixed" else node.covariance_m2
         return NodeEstimate(
             node=node.node,
@@ -33,14 +43,14 @@ def _estimate(state: FusionState, node: NodeState, covariance: Array) -> NodeEst
             covariance_m2=known,
             retired=node.mode == "retired",
         )
-    rows = state.graph.rows(node.position)
+    (east, north, up), (ee, en, eu, nn, nu, uu) = place
     heading, sigma = _heading(state, node, covariance)
     return NodeEstimate(
         node=node.node,
         role=node.role,
         t=node.t,
-        position_m=tuple_of(state.graph.value(node.position)),
-        covariance_m2=upper_triangle(covariance[rows, rows]),
+        position_m=(east, north, up),
+        covariance_m2=(ee, en, eu, nn, nu, uu),
         heading_rad=heading,
         heading_sigma_rad=sigma,
         speed_mps=node.speed_mps,
