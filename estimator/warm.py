@@ -16,9 +16,9 @@ from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.displacement import move
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
-from estimator.smoothing.ends import Table, place_ends
+from estimator.smoothing.ends import Nodes, Table, place_ends, stand
 from estimator.smoothing.linear import ANY, Readings, bends, jacobians, residuals
-from estimator.smoothing.walks import STATES, inverses, led_by, misfit, unit_motion
+from estimator.smoothing.walks import STATES, inverses, led_by, misfit, sums_between, unit_motion
 
 
 def warm_up() -> None:
@@ -59,6 +59,9 @@ def _warm_chain() -> None:
     place = np.zeros((1, 3))
     end = Table(slab, np.zeros((1, STATES), dtype=np.int64), place, place, place, one)
     place_ends(end, x)
+    nodes = Nodes(slab, slab, slab, place)
+    stand(nodes, slab, one, np.zeros(1, dtype=np.bool_), rest, place, np.zeros((1, 2), dtype=np.int64))
+    sums_between(0.0, one, between, one, one)
     pair = np.zeros((1, 2), dtype=np.int64)
     readings = Readings(slab, one, one, pair, end, end, slab, one, end, end, end)
     residuals(readings, x)
