@@ -9,7 +9,7 @@ from estimator.fusion.rows import FIELDS, ONE
 from estimator.fusion.update import tally
 from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute
 from estimator.graph.kirchhoff import Kirchhoff
-from estimator.graph.robust import weigh
+from estimator.graph.robust import mixture_cost, weigh
 from estimator.graph.scatter import add_motion, couple, localise, scatter_rows
 from estimator.graph.variable import Variable
 from estimator.measurements.bearing import predict_bearing, wrap
@@ -33,6 +33,7 @@ def warm_up() -> None:
     predict_bearing(place, place, one)
     wrap(one)
     weigh(one, one, one, *strided)
+    mixture_cost(one, one, *strided)
     find_modes(Sought("range", place, one, one, 0.0, 1.0, np.zeros(2), np.eye(2)))
 
 

@@ -66,6 +66,7 @@ class Way:
 
     def between(self, since: Array, until: Array) -> Array:
         """What lies between epochs, m × 12, moments from `since` on; silence adds a random walk."""
+        since, until = np.ascontiguousarray(since), np.ascontiguousarray(until)
         found = sums_between(self._begin, self._marks, self._sums, since, until)
         silent = np.clip(until - np.maximum(since, self._marks[-1]), 0.0, LONGEST_S)
         wander = physics.SILENT_M_PER_ROOT_S**2 * silent
