@@ -173,26 +173,26 @@ class Rows:
         """
         self.sigma = self._told.copy()
         m, n = len(self.pairs), len(self.singles)
-        self._through_floors(x)
-        self._sharpen(x)
+        a, b = self.places(x)
+        self._through_floors(a, b)
+        self._sharpen(x, a, b)
         for columns, ends in ((slice(0, 3), self._a), (slice(6, 9), self._b)):
             self._add(slice(0, m), jacobian[:m, columns], ends.unsure_m2)
         self._add(slice(m, m + n), jacobian[m : m + n, :3], self._on.unsure_m2)
         drops = np.repeat(self._by.unsure_m2, 3, axis=0)
         self._add(slice(m + n, len(self.sigma)), jacobian[m + n :, :3], drops)
 
-    def _through_floors(self, x: Array) -> None:
+    def _through_floors(self, a: Array, b: Array) -> None:
         m = len(self.pairs)
-        a, b = self.places(x)
         through = self._inside & (np.abs(a[:, 2] - b[:, 2]) > physics.FLOOR_M)
-        lost = np.where(self.pairs[:, 1] == RANGE, *physics.FLOOR_SIGMA)
-        self.sigma[:m] = np.where(through, np.hypot(self.sigma[:m], lost), self.sigma[:m])
+        if through.any():
+            lost = np.where(self.pairs[:, 1] == RANGE, *physics.FLOOR_SIGMA)
+            self.sigma[:m] = np.where(through, np.hypot(self.sigma[:m], lost), self.sigma[:m])
 
-    def _sharpen(self, x: Array) -> None:
+    def _sharpen(self, x: Array, a: Array, b: Array) -> None:
         at = np.flatnonzero(self._strongest)
         if not len(at):
             return
-        a, b = self.places(x)
         extra = x[self._readings.extra[at]]
         near = near_dbm(extra[:, 0] + self.pairs[at, 7], extra[:, 1])
         close = np.linalg.norm(a[at] - b[at], axis=1) <= physics.ENCOUNTER_M

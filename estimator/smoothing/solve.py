@@ -135,9 +135,10 @@ class Problem:
     def weigh(self, residual: Array, slack_m: float = 0.0) -> Weighted:
         """E-step of the readings' noise."""
         outliers, shift, spread = self.rows.noise.T
-        powers = np.zeros(len(residual), dtype=bool)
-        powers[: len(self.rows.pairs)] = self.rows.pairs[:, 1] == RSSI
-        predicted = np.where(powers, (SLACK_DB_PER_M * slack_m) ** 2, slack_m**2)
+        predicted = np.full(len(residual), slack_m**2)
+        if slack_m > 0.0:
+            powers = self.rows.pairs[:, 1] == RSSI
+            predicted[: len(powers)][powers] = (SLACK_DB_PER_M * slack_m) ** 2
         return weigh(residual, self.rows.sigma, predicted, outliers, shift, spread)
 
     def assemble(
