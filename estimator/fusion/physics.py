@@ -4,8 +4,8 @@ Physics leaves most of them a span. Some were chosen among what is plausible wit
 public sets plaza1, danis and hanyang, and the scenarios of `estimator.simulate`. Accuracy on these is
 therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M`, `SCALE_SIGMA`,
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
-`FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `FREE_WAY_MPS`, `SLIP_M` and `SLIP_RARE`. M marks what estimation.md
-reports as measured.
+`FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE` and `WALL_M`. M marks what
+estimation.md reports as measured.
 """
 
 from math import radians
@@ -109,6 +109,9 @@ FLOOR_M = 2.0
 FLOOR_SIGMA = (3.0, 20.0)
 """What is added to the noise of a range (m) and of a signal (dB) through a floor. It takes 10 to 20 dB and
 makes ranges half a metre too long. That is no noise: taken for it, many such readings would bend the map."""
+WALL_M = 0.1
+"""Between two radios inside there are walls, furniture and bodies: so much of a range's error stays while
+nobody moves, however little readings that follow each other differ."""
 OUTSIDE_ROLES = frozenset({"uav", "anchor"})
 
 BEARING_SIGMA_RAD = 0.2

@@ -153,9 +153,12 @@ class Rows:
                 self.noise[mine, 0] = learned.outliers(
                     float(NOISES[RSSI if name.startswith("rssi ") else RANGE][0])
                 )
+        m = len(self.pairs)
+        stays = np.zeros(len(self.nominal))
+        stays[:m][self._inside & (self.pairs[:, 1] == RANGE)] = physics.WALL_M
         total = (self.nominal * factor) ** 2
-        common = shared * total
-        white = total - common
+        white = (1.0 - shared) * total
+        common = total - white + stays**2
         before, now = white + (self.alike - 1.0) * common, white + self.alike * common
         single = np.maximum(np.sqrt(before * now / white), physics.SIGMA_FLOOR_M)
         self._told = np.where(self.source >= 0, single, self.nominal)

@@ -1,0 +1,49 @@
+"""What readings in a window are worth together."""
+
+import numpy as np
+import pytest
+
+from estimator.fusion import physics
+from estimator.measurements import AnyReading
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.node import Node, Role
+from estimator.measurements.range import Range
+from tests.estimator.smoothing.windows import fused, problem_of
+
+
+def stood(role: Role, seconds: int = 200) -> list[AnyReading]:
+    """A responder stands 8 m from a known node and ranges to it each second."""
+    chance = np.random.default_rng(5)
+    readings: list[AnyReading] = [
+        Node(t=0.0, node="other", role=role, position_m=(8.0, 0.0, 0.0), sigma_m=0.05),
+        Node(
+            t=0.0,
+            node="ff1",
+            role="responder",
+            position_m=(0.0, 0.0, 0.0),
+            sigma_m=0.05,
+            heading_sigma_rad=0.01,
+        ),
+    ]
+    for second in range(1, seconds + 1):
+        readings.append(
+            Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(0.0, 0.0, 0.0))
+        )
+        range_m = 8.0 + float(chance.normal(0.0, 0.1))
+        readings.append(Range(t=float(second), a="ff1", b="other", range_m=range_m, technology="uwb"))
+    return readings
+
+
+def worth_m(role: Role) -> float:
+    """Standard deviation of all ranges to a node of a role together (m)."""
+    problem = problem_of(fused(stood(role)))
+    told = problem.rows.sigma[: len(problem.rows.pairs)]
+    return float((told**-2).sum() ** -0.5)
+
+
+def test_inside_ranges_of_a_link_are_worth_no_more_than_what_stays_while_nobody_moves() -> None:
+    assert worth_m("breadcrumb") == pytest.approx(physics.WALL_M, rel=0.2)
+
+
+def test_nothing_stays_between_a_responder_and_a_surveyed_anchor() -> None:
+    assert worth_m("anchor") < 0.5 * physics.WALL_M
