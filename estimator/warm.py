@@ -7,6 +7,7 @@ from estimator.fusion.free import free_motion
 from estimator.fusion.modes import Sought, find_modes
 from estimator.fusion.rows import FIELDS, ONE
 from estimator.fusion.update import tally
+from estimator.graph.dense import factorise, inverse
 from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.robust import mixture_cost, weigh
@@ -77,6 +78,7 @@ def _warm_filter() -> None:
     rows, straight = np.arange(3)[None], np.eye(3)[None]
     graph.advance(rows, graph.reference[rows], straight, straight)
     graph.add_measurements(rows, np.ones((1, 3)), np.ones(1), np.zeros(1))
+    inverse(factorise(graph.information))
     move(np.zeros((1, 6)), np.zeros((1, 3)), np.ones(1))
     free_motion("responder", 1.0)
     table = np.full((1, FIELDS), 0.5)

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotri, dpotrs
 
@@ -40,24 +41,48 @@ def factorise(matrix: Array) -> Cholesky:
     """
     if len(matrix) == 0:  # LAPACK refuses empty matrices
         return Cholesky(np.zeros((0, 0)), np.zeros(0))
-    diagonal = np.diagonal(matrix)
-    if not np.isfinite(matrix).all() or not diagonal.min() > 0.0:
-        raise ValueError("the information matrix is not finite or has a variable without information")
-    scale = np.sqrt(diagonal)
-    unscale = 1.0 / scale
+    matrix, scaled, scale = np.ascontiguousarray(matrix), np.zeros(matrix.shape), np.empty(len(matrix))
     jitter = 0.0
     while True:
-        scaled = matrix * unscale[:, None]
-        scaled *= unscale
-        if jitter:
-            scaled.flat[:: len(scale) + 1] += jitter
-        # LAPACK works by columns; the matrix is symmetric, so its transpose is the same without a copy.
-        factor, failed = dpotrf(scaled.T, lower=1, clean=1, overwrite_a=1)
+        if not scale_diagonal(matrix, jitter, scaled, scale):
+            raise ValueError("the information matrix is not finite or has a variable without information")
+        # LAPACK works by columns: the upper triangle by rows is the lower one to it, without a copy.
+        factor, failed = dpotrf(scaled.T, lower=1, clean=0, overwrite_a=1)
         if failed == 0:
             return Cholesky(factor, scale)
         jitter = 1e-13 if jitter == 0.0 else jitter * 10.0
         if jitter > MAX_JITTER:
             raise ValueError("the information matrix is not positive definite")
+
+
+@njit(cache=True)
+def scale_diagonal(matrix: Array, jitter: float, scaled: Array, scale: Array) -> bool:
+    """Scale a matrix so that its diagonal is 1, and raise that by `jitter`.
+
+    Args:
+        matrix: n × n.
+        jitter: what is added to the diagonal.
+        scaled: its upper triangle takes the result, n × n.
+        scale: takes the roots of the matrix's diagonal, n.
+
+    Returns:
+        False where the matrix is not finite or its diagonal not positive.
+    """
+    n = len(matrix)
+    for i in range(n):
+        if not matrix[i, i] > 0.0:
+            return False
+        scale[i] = np.sqrt(matrix[i, i])
+    unscale = 1.0 / scale
+    for i in range(n):
+        row, found = matrix[i], scaled[i]
+        for j in range(n):
+            if not np.isfinite(row[j]):
+                return False
+        for j in range(i, n):
+            found[j] = row[j] * unscale[i] * unscale[j]
+        found[i] += jitter
+    return True
 
 
 def mended(matrix: Array) -> Array:
@@ -92,9 +117,16 @@ def inverse(cholesky: Cholesky) -> Array:
     if len(cholesky.scale) == 0:
         return np.zeros((0, 0))
     lower, _ = dpotri(cholesky.factor, lower=1)
-    full: Array = lower + lower.T
-    full.flat[:: len(full) + 1] *= 0.5
-    unscale = 1.0 / cholesky.scale
-    full *= unscale[:, None]
-    full *= unscale
-    return full
+    return unscaled(lower.T, cholesky.scale)
+
+
+@njit(cache=True)
+def unscaled(upper: Array, scale: Array) -> Array:
+    """Both triangles of D⁻¹ A D⁻¹ for the upper one of A (n × n) and the diagonal of D (n)."""
+    n, unscale = len(scale), 1.0 / scale
+    found = np.empty((n, n))
+    for i in range(n):
+        for j in range(i, n):
+            found[i, j] = upper[i, j] * unscale[i] * unscale[j]
+            found[j, i] = upper[i, j] * unscale[j] * unscale[i]
+    return found
