@@ -95,16 +95,25 @@ def substitute(diagonal: Array, link: Array, wide: Array, fixed: Array, steps: A
     size = link.shape[2]
     tail, carried = np.ones(across), np.empty(width)
     tail[: across - 1] = -fixed
+    rights = np.dot(wide.reshape(length * width, across), tail).reshape(length, width)
     for j in range(length - 1, -1, -1):
-        right = np.dot(wide[j], tail)
+        half, right, step = diagonal[j], rights[j], steps[j]
         if j < length - 1:
             for c in range(width):
-                at = c // size * size
-                carried[c] = 0.0
+                block = c // size
+                at, total = block * size, 0.0
                 for i in range(size):
-                    carried[c] += link[j, c // size, i, c - at] * steps[j + 1, at + i]
-            right -= np.dot(diagonal[j], carried)
-        steps[j] = np.dot(diagonal[j].T, right)
+                    total += link[j, block, i, c - at] * steps[j + 1, at + i]
+                carried[c] = total
+            for r in range(width):
+                total = 0.0
+                for c in range(r + 1):
+                    total += half[r, c] * carried[c]
+                right[r] -= total
+        step[:] = 0.0
+        for r in range(width):
+            for c in range(r + 1):
+                step[c] += half[r, c] * right[r]
 
 
 @njit(cache=True)
@@ -122,30 +131,59 @@ def selected_inverse(
         ahead: rows of a keyframe, columns of the next, (k − 1) × blocks × b × b, changed.
     """
     length, width, across = wide.shape
-    count, size = found.shape[1:3]
-    next_border, next_covariance = np.zeros((width, across - 1)), np.zeros((width, width))
-    to_next, turned = np.empty((width, width)), np.zeros((width, width))
+    count, size, lasting = found.shape[1], found.shape[2], across - 1
+    border, to_border = np.empty((width, lasting)), np.empty((width, lasting))
+    with_border, next_border = np.empty((width, lasting)), np.zeros((width, lasting))
+    on_border, turned = np.empty((width, lasting)), np.zeros((width, width))
+    covariance, next_covariance = np.empty((width, width)), np.zeros((width, width))
+    to_next, with_next = np.empty((width, width)), np.empty((width, width))
+    product = np.empty((width, width))
     for j in range(length - 1, -1, -1):
-        back = diagonal[j].T
-        border = wide[j, :, : across - 1].copy()
-        to_border = -np.dot(back, border)
-        with_border = np.dot(to_border, border_covariance)
-        covariance = np.dot(back, diagonal[j])
+        border[:] = wide[j, :, :lasting]
+        np.dot(diagonal[j].T, border, to_border)
+        turn_sign(to_border)
+        np.dot(to_border, border_covariance, with_border)
+        np.dot(diagonal[j].T, diagonal[j], covariance)
         if j < length - 1:
             turn_link(link[j], turned)
-            np.dot(-covariance, turned, to_next)
-            with_next = np.dot(to_next, next_covariance) + np.dot(to_border, next_border.T)
-            with_border += np.dot(to_next, next_border)
-            covariance += np.dot(with_next, to_next.T)
+            np.dot(covariance, turned, to_next)
+            turn_sign(to_next)
+            np.dot(to_next, next_covariance, with_next)
+            np.dot(to_border, next_border.T, product)
+            add(product, with_next)
+            np.dot(to_next, next_border, on_border)
+            add(on_border, with_border)
+            np.dot(with_next, to_next.T, product)
+            add(product, covariance)
             for block in range(count):
                 own = slice(block * size, (block + 1) * size)
                 ahead[j, block] = with_next[own, own]
-        covariance += np.dot(with_border, to_border.T)
-        next_covariance = 0.5 * (covariance + covariance.T)
+        np.dot(with_border, to_border.T, product)
+        add(product, covariance)
+        for r in range(width):
+            for c in range(r + 1):
+                mean = 0.5 * (covariance[r, c] + covariance[c, r])
+                next_covariance[r, c] = next_covariance[c, r] = mean
         for block in range(count):
             own = slice(block * size, (block + 1) * size)
             found[j, block] = next_covariance[own, own]
-        next_border = with_border
+        with_border, next_border = next_border, with_border
+
+
+@njit(cache=True)
+def turn_sign(matrix: Array) -> None:
+    """−A in the place of A."""
+    for r in range(len(matrix)):
+        for c in range(matrix.shape[1]):
+            matrix[r, c] = -matrix[r, c]
+
+
+@njit(cache=True)
+def add(more: Array, total: Array) -> None:
+    """Add a matrix to another one in its place."""
+    for r in range(len(total)):
+        for c in range(total.shape[1]):
+            total[r, c] += more[r, c]
 
 
 @njit(cache=True)
