@@ -17,8 +17,9 @@ from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.displacement import move
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
+from estimator.smoothing.bent import add_bends
 from estimator.smoothing.ends import Nodes, Table, place_ends, stand
-from estimator.smoothing.linear import ANY, Readings, bends, jacobians, residuals
+from estimator.smoothing.linear import ANY, Readings, jacobians, residuals
 from estimator.smoothing.walks import STATES, inverses, led_by, misfit, sums_between, unit_motion
 
 
@@ -68,7 +69,7 @@ def _warm_chain() -> None:
     readings = Readings(slab, one, one, pair, end, end, slab, one, end, end, end)
     residuals(readings, x)
     jacobians(readings, x)
-    bends(readings, slab, x, one, one, True)
+    add_bends(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
 
 
 def _warm_filter() -> None:

@@ -5,17 +5,16 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE, RSSI
+from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import bearing_at
-from estimator.measurements.range import range_at, range_slope
-from estimator.measurements.rssi import ANTENNA_M, rssi_at, rssi_slope
+from estimator.measurements.range import range_at
+from estimator.measurements.rssi import rssi_at
 from estimator.smoothing.ends import FIXED, UNIT, Table, place_end, place_ends
 
 ANY = 14
 """Numbers that one row depends on at most: two ends of six, two of a technology."""
-NOWHERE_M2 = 1e-6
 
 
 class Readings(NamedTuple):
@@ -46,20 +45,6 @@ class Readings(NamedTuple):
     on: Table
     by: Table
     crumb: Table
-
-
-class Bends(NamedTuple):
-    """What bent readings add to the curvature, as rows of their own without a residual.
-
-    Attributes:
-        pair: which pair each is of.
-        jacobian: derivatives, count × 14.
-        information: count.
-    """
-
-    pair: Integers
-    jacobian: Array
-    information: Array
 
 
 class Seen(NamedTuple):
@@ -177,61 +162,3 @@ def jacobians(readings: Readings, x: Array) -> Array:
             if readings.crumb.kind[i] != FIXED:
                 row[6 + c], row[9:12] = 1.0, crumb.turned[i, c]
     return found
-
-
-@njit(cache=True)
-def bends(
-    readings: Readings, chosen: Integers, x: Array, information: Array, residual: Array, signed: bool
-) -> Bends:
-    """The curvature of distances, which Gauss-Newton leaves out: −P⁻¹ r ∂²h/∂x².
-
-    A distance that does not fit its reading bends across the line of sight, and a power that falls with its
-    logarithm bends along it as well, the other way. Without this a step goes several times too far wherever
-    radios are near each other. Upwards only what is positive is taken: on a level floor a height and its
-    mirror image fit alike, and between them the cost bends down. Along the floor negative curvature is needed
-    where a whole incident may still turn: it takes away what is positive there.
-
-    Args:
-        readings: of the window.
-        chosen: which pairs.
-        x: the estimate, flat.
-        information: P⁻¹ of each pair, m at least.
-        residual: z − h(x) as it is weighed, m at least.
-        signed: take negative curvature along the floor too; else only what is positive.
-    """
-    m, count = len(chosen), 0
-    pair, known, jacobian = np.empty(3 * m, dtype=np.int64), np.empty(3 * m), np.zeros((3 * m, ANY))
-    a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
-    axis, along = np.empty((3, 3)), np.empty(3)
-    for i in chosen:
-        if readings.kind[i] > RSSI:
-            continue
-        by_a[:], by_b[:] = 0.0, 0.0
-        place_end(readings.a, i, x, a, by_a)
-        place_end(readings.b, i, x, b, by_b)
-        e, n, u = a[0] - b[0], a[1] - b[1], a[2] - b[2]
-        level, squared = e * e + n * n, e * e + n * n + u * u
-        if level < NOWHERE_M2:
-            continue
-        state = x[readings.extra[i, 0 if readings.kind[i] == RANGE else 1]]
-        slope = range_slope(squared, state) if readings.kind[i] == RANGE else rssi_slope(squared, state)
-        across = -information[i] * residual[i] * slope
-        distance, flat = np.sqrt(squared), np.sqrt(level)
-        axis[0] = (-n / flat, e / flat, 0.0)
-        axis[1] = (-e * u / (flat * distance), -n * u / (flat * distance), flat / distance)
-        axis[2] = (e / distance, n / distance, u / distance)
-        along[0], along[1] = across if signed else max(across, 0.0), max(across, 0.0)
-        along[2] = 0.0
-        if readings.kind[i] == RSSI:
-            along[2] = across * (1.0 - 2.0 * squared / (squared + ANTENNA_M * ANTENNA_M))
-            along[2] = along[2] if signed else max(along[2], 0.0)
-        for way in range(3):
-            if along[way] == 0.0:
-                continue
-            pair[count], known[count] = i, along[way]
-            if readings.a.kind[i] != FIXED:
-                pull(axis[way], by_a, jacobian[count, :6])
-            if readings.b.kind[i] != FIXED:
-                pull(-axis[way], by_b, jacobian[count, 6:12])
-            count += 1
-    return Bends(pair[:count], jacobian[:count], known[:count])

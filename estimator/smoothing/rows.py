@@ -13,7 +13,7 @@ from estimator.measurements.bearing import wrap
 from estimator.smoothing.encounters import candidates, near_dbm
 from estimator.smoothing.ends import UNIT, Ends, nodes_of, place_ends
 from estimator.smoothing.layout import Layout
-from estimator.smoothing.linear import ANY, Bends, Readings, bends, jacobians, residuals
+from estimator.smoothing.linear import ANY, Readings, jacobians, residuals
 
 DROP = len(physics.NOISES) - 1
 NOISES = np.array(physics.NOISES)
@@ -227,6 +227,7 @@ class Rows:
         """Derivatives at an estimate x, flat, m × 14."""
         return jacobians(self._readings, x)
 
-    def bends(self, chosen: Integers, x: Array, information: Array, residual: Array, signed: bool) -> Bends:
-        """What the second derivatives of some pairs add to the curvature; see `linear.bends`."""
-        return bends(self._readings, chosen, x, information, residual, signed)
+    @property
+    def readings(self) -> Readings:
+        """All that their residuals follow from, as numbers."""
+        return self._readings

@@ -9,6 +9,7 @@ from estimator.fusion.prior import Prior
 from estimator.graph.dense import Array
 from estimator.graph.robust import Weighted, mixture_cost, weigh
 from estimator.graph.scatter import add_motion
+from estimator.smoothing.bent import add_bends
 from estimator.smoothing.carried import Carried
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.groups import Groups
@@ -28,8 +29,6 @@ LEAST_SHARE, FARTHEST = 0.1, 4.0
 """Shares of a step between which the cost is looked for at its lowest."""
 CLOSE = 0.3
 """A step is good enough where the lowest cost is within this share of it."""
-TOGETHER = 4096
-"""Pairs that are bent at a time: what they need stays in the processor's cache."""
 LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e3
 
 
@@ -83,8 +82,7 @@ class Problem:
         self._groups = Groups(layout.width, layout.border, coupled)
         self._every = np.arange(len(rows.slab))
         self._placed = self._groups.placed(rows.slab, rows.columns)
-        pairs = [part[: np.searchsorted(part, len(rows.pairs))] for part in self._placed.parts]
-        self._pairs = [np.split(part, range(TOGETHER, len(part), TOGETHER)) for part in pairs]
+        self._pairs = [part[: np.searchsorted(part, len(rows.pairs))] for part in self._placed.parts]
         size, width = layout.length * layout.width, max(layout.width, 1)
         slab = np.where(self._at < size, self._at // width, 0)
         columns = np.where(self._at < size, self._at % width, self._at - size + layout.width)
@@ -211,7 +209,7 @@ class Problem:
         weighted = self.weigh(linear.residual, slack_m)
         for signed in (True, False) if near else (False,):
             chain = self.assemble(x, linear, weighted, motions)
-            self._bend(chain, x, weighted, signed)
+            self.bend(chain, x, weighted, signed)
             chain.damp(damping)
             slope = chain.slope()
             try:
@@ -224,13 +222,20 @@ class Problem:
         step = np.concatenate([steps.ravel(), fixed])
         return step, 0.5 * float(slope @ step)
 
-    def _bend(self, chain: Chain, x: Array, weighted: Weighted, signed: bool) -> None:
-        """Add the rows' own curvature to the normal equations: for the step, not for what is known."""
-        for strand, parts in zip(chain.strands, self._pairs, strict=True):
-            for part in parts:
-                bent = self.rows.bends(part, x, weighted.information, weighted.residual, signed)
-                every, nothing = np.arange(len(bent.pair)), np.zeros(len(bent.pair))
-                strand.add(self._placed, every, bent.pair, bent.jacobian, bent.information, nothing)
+    def bend(self, chain: Chain, x: Array, weighted: Weighted, signed: bool) -> None:
+        """Add the rows' own curvature to the normal equations: for the step, not for what is known.
+
+        Args:
+            chain: takes it.
+            x: the estimate, flat.
+            weighted: how the rows are weighed.
+            signed: negative curvature too; see `bent.add_bends`.
+        """
+        rows, placed = self.rows, self._placed
+        told = x, weighted.information, weighted.residual, signed, placed.slab, placed.columns
+        for strand, part in zip(chain.strands, self._pairs, strict=True):
+            if len(part):
+                add_bends(rows.readings, part, *told, strand.diagonal, strand.wide, strand.corner)
 
     def solve(
         self, x: Array, slacks_m: tuple[float, ...] = (), iterations: int = 20, resting: float = RESTING

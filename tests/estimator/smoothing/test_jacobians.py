@@ -10,12 +10,13 @@ from hypothesis import strategies as st
 from estimator.fusion import physics
 from estimator.fusion.ledger import BODY_BEARING, RANGE, RSSI
 from estimator.graph.dense import Array
+from estimator.graph.robust import Weighted
 from estimator.measurements import bearing
 from estimator.smoothing.ends import Ends, place_ends
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.walks import STATES, Motion, Way, free_motions, led_by, unit_motion
-from tests.estimator.smoothing.windows import fused, problem_of
+from tests.estimator.smoothing.windows import dense, fused, problem_of
 from tests.estimator.walks import two_responders
 
 seeds = st.integers(0, 10_000)
@@ -231,9 +232,11 @@ def test_distances_bend_as_their_jacobians_change(incident: Problem, seed: int) 
     weight = np.zeros(len(rows.slab))
     kinds = rows.pairs[:, 1]
     weight[:m] = np.abs(chance.normal(0.0, 1.0, m)) * np.select([kinds == RANGE, kinds == RSSI], [-1.0, 1.0])
-    pair, jacobian, information = rows.bends(np.arange(m), x, np.ones(m), weight, True)
-    each = np.array([spread_row(rows, r, j, incident) for r, j in zip(pair, jacobian, strict=True)])
-    told = (each.T * information) @ each
+    weighted = Weighted(np.ones(len(weight)), weight, np.ones(len(weight)))
+    chain = incident.assemble(x, incident.linearise(x), weighted, incident.motions(x))
+    before, _ = dense(chain)
+    incident.bend(chain, x, weighted, signed=True)
+    told = dense(chain)[0] - before
     walked = np.arange(size).reshape(layout.length, -1, STATES)[:, :, :3].ravel()
     places = [*walked.tolist(), *(size + s + c for s in layout.stands.values() for c in range(3))]
     expected = -difference(lambda at: spread(rows, rows.jacobian(at), incident).T @ weight, x)
