@@ -19,7 +19,9 @@ from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.bent import add_bends
 from estimator.smoothing.ends import Nodes, Table, place_ends, stand
+from estimator.smoothing.learn import noise_scores
 from estimator.smoothing.linear import ANY, Readings, jacobians, residuals
+from estimator.smoothing.slips import gains, unsure
 from estimator.smoothing.walks import STATES, inverses, led_by, misfit, sums_between, unit_motion
 
 
@@ -52,6 +54,9 @@ def _warm_chain() -> None:
     between, states = np.zeros((1, 12)), np.zeros((k, n))
     motion = unit_motion(between, one, states)
     misfit(motion)
+    doubt = unsure(motion, np.zeros((k, 1, n, n)), np.zeros((k - 1, 1, n, n)), 0, 0)
+    noise_scores(motion, doubt)
+    gains(motion, doubt)
     inverses(motion.noise)
     led_by(states, np.zeros((k, 12))[:, :3], np.zeros((k, 12))[:, 3:6], np.ones(k))
     add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)

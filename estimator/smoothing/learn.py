@@ -8,12 +8,14 @@ what the radio does not see of a step stays in V.
 
 import numpy as np
 from msgspec.structs import replace
+from numba import njit
 
 from estimator.fusion.calibration import narrow_sigma, scale_sigma, uncalibrated
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.slips import admit, find_slips, unsure
 from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.walks import Motion
 
 SPREAD = 1.0
 """Units differ from the usual one by this much in the logarithm of a variance."""
@@ -21,6 +23,8 @@ STEP = 0.3
 SEEN = 0.03
 """Share of a step's own noise that readings usually tell apart: what a score is held against."""
 LEAST, MOST = 0.03, 20.0
+PARTS = 4
+"""Numbers of a state that its noise is learned of: place and heading."""
 
 
 def learn(state: FusionState, problem: Problem, solved: Solved, step: float = STEP) -> Array:
@@ -63,31 +67,64 @@ def learn_walks(
         motion = solved.motions[i]
         if walk.way is None or not len(motion.noise):
             continue
-        now = slice(walk.first, walk.last)
-        after = found[walk.first + 1 : walk.last + 1, i]
-        outer = motion.residual[:, :, None] * motion.residual[:, None, :]
-        outer += unsure(motion, found[now, i], after, ahead[now, i])
-        inverse = motion.information
-        excess = np.matmul(np.matmul(inverse, outer - motion.noise), inverse)
-        lever = motion.transition[:, :2, 3]
-        turn = motion.noise[:, 3, 3]
-        by_turn = np.zeros_like(motion.noise)
-        by_turn[:, 3, 3] = turn
-        by_turn[:, :2, :2] = lever[:, :, None] * lever[:, None, :] * (turn / 3.0)[:, None, None]
-        by_turn[:, :2, 3] = by_turn[:, 3, :2] = lever * (0.5 * turn)[:, None]
-        by_place = np.zeros_like(motion.noise)
-        across = np.diagonal(motion.noise - by_turn, axis1=1, axis2=2)
-        by_place[:, range(3), range(3)] = across[:, :3]
+        scores = noise_scores(motion, unsure(motion, found, ahead, i, walk.first)).tolist()
         node = state.nodes[walk.node.node]
         factors = []
-        for factor, part in zip(node.walk_factors, (by_place, by_turn), strict=True):
-            score = 0.5 * float((excess * part).sum())
+        for factor, (score, sure) in zip(node.walk_factors, scores, strict=True):
             off = np.log(factor)
-            told = np.matmul(inverse, part)
-            known = 0.5 * float(np.einsum("kij,kji->", told, told)) * SEEN + abs(score) + 1.0 / SPREAD**2
+            known = sure * SEEN + abs(score) + 1.0 / SPREAD**2
             step = np.clip(2.0 * (score - off / SPREAD**2) / known, -most, most)
             factors.append(float(np.clip(factor * np.exp(step), LEAST, MOST)))
         state.nodes[node.node] = replace(node, walk_factors=(factors[0], factors[1]))
+
+
+@njit(cache=True)
+def noise_scores(motion: Motion, unsure_of: Array) -> Array:
+    """Score by the logarithm of a variance, ½ Σ [w wᵀ + V − Q] : Q⁻¹ Q_i Q⁻¹, and ½ Σ (Q⁻¹ Q_i) : (Q_i Q⁻¹).
+
+    Args:
+        motion: of a walk.
+        unsure_of: V of its steps, k × 6 × 6.
+
+    Returns:
+        A row for the variances of places and one for those of headings, 2 × 2.
+    """
+    found = np.zeros((2, 2))
+    size = motion.residual.shape[1]
+    # Of each noise, and of what follows from it, only the first four rows and columns are ever needed.
+    part, excess, told = np.zeros((2, PARTS, PARTS)), np.empty((PARTS, PARTS)), np.empty((PARTS, PARTS))
+    half = np.empty((PARTS, size))
+    for i in range(len(motion.residual)):
+        known, noise, off, doubt = motion.information[i], motion.noise[i], motion.residual[i], unsure_of[i]
+        turn, east, north = noise[3, 3], motion.transition[i, 0, 3], motion.transition[i, 1, 3]
+        by_place, by_turn = part[0], part[1]
+        by_turn[0, 0], by_turn[1, 1] = east * east * turn / 3.0, north * north * turn / 3.0
+        by_turn[0, 1] = by_turn[1, 0] = east * north * turn / 3.0
+        by_turn[0, 3] = by_turn[3, 0] = 0.5 * east * turn
+        by_turn[1, 3] = by_turn[3, 1] = 0.5 * north * turn
+        by_turn[3, 3] = turn
+        for c in range(3):
+            by_place[c, c] = noise[c, c] - by_turn[c, c]
+        for r in range(PARTS):
+            half[r] = 0.0
+            for j in range(size):
+                for c in range(size):
+                    half[r, c] += known[r, j] * (off[j] * off[c] + doubt[j, c] - noise[j, c])
+            for c in range(PARTS):
+                excess[r, c] = 0.0
+                for j in range(size):
+                    excess[r, c] += half[r, j] * known[j, c]
+        for which in range(2):
+            for r in range(PARTS):
+                for c in range(PARTS):
+                    found[which, 0] += 0.5 * excess[r, c] * part[which, r, c]
+                    told[r, c] = 0.0
+                    for j in range(PARTS):
+                        told[r, c] += known[r, j] * part[which, j, c]
+            for r in range(PARTS):
+                for c in range(PARTS):
+                    found[which, 1] += 0.5 * told[r, c] * told[c, r]
+    return found
 
 
 def calibrate(state: FusionState, problem: Problem, x: Array, border: Array) -> None:

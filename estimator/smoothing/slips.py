@@ -8,6 +8,7 @@ by, Q − V (auxiliary residuals: de Jong and Penzer, Diagnosing shocks in time 
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from estimator.fusion import physics
 from estimator.fusion.state import FusionState
@@ -15,6 +16,7 @@ from estimator.graph.dense import Array
 from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.walks import Motion
 
+SLIP_M = physics.SLIP_M
 APART_S = 30.0
 """Steps as near as this to a slip stand out because of it."""
 ELSE = 1.0
@@ -37,21 +39,45 @@ class Slip(NamedTuple):
     off_m: tuple[float, float]
 
 
-def unsure(motion: Motion, before: Array, after: Array, ahead: Array) -> Array:
+@njit(cache=True)
+def unsure(motion: Motion, found: Array, ahead: Array, walk: int, first: int) -> Array:
     """V: covariance of the smoothed disturbances w of a walk's steps, k × 6 × 6.
 
     Args:
         motion: of the walk.
-        before: covariance at the beginning of each step, k × 6 × 6.
-        after: the same at its end.
-        ahead: of the beginning with the end.
+        found: covariance of each walk at each keyframe, keyframes × walks × 6 × 6.
+        ahead: of each with itself at the next keyframe.
+        walk: which of them.
+        first: keyframe that its first step leaves from.
     """
-    transition = motion.transition
-    carried = np.matmul(transition, ahead)
-    found = after + np.matmul(np.matmul(transition, before), transition.transpose(0, 2, 1))
-    return np.asarray(found - carried - carried.transpose(0, 2, 1))
+    count, size = motion.residual.shape
+    covariance = np.empty((count, size, size))
+    carried, across = np.empty((size, size)), np.empty((size, size))
+    for i in range(count):
+        way, at = motion.transition[i], first + i
+        before, after, between = found[at, walk], found[at + 1, walk], ahead[at, walk]
+        for r in range(size):
+            for c in range(size):
+                carried[r, c] = across[r, c] = 0.0
+            for j in range(size):
+                share = way[r, j]
+                if share != 0.0:  # most of F is
+                    for c in range(size):
+                        carried[r, c] += share * before[j, c]
+                        across[r, c] += share * between[j, c]
+        for r in range(size):
+            for c in range(size):
+                covariance[i, r, c] = after[r, c] - across[r, c] - across[c, r]
+        for r in range(size):
+            for j in range(size):
+                share = way[r, j]
+                if share != 0.0:
+                    for c in range(size):
+                        covariance[i, c, r] += carried[c, j] * share
+    return covariance
 
 
+@njit(cache=True)
 def gains(motion: Motion, unsure_of: Array) -> tuple[Array, Array]:
     """How much likelier the readings are if a step has slipped, and by how much it then has.
 
@@ -64,17 +90,32 @@ def gains(motion: Motion, unsure_of: Array) -> tuple[Array, Array]:
     Returns:
         log p(z | slip) − log p(z | none) of each step, k; δ, k × 2 (m).
     """
-    inverse = motion.information
-    pulled = np.matmul(inverse, motion.residual[:, :, None])[:, :2]
-    told = (inverse - np.matmul(np.matmul(inverse, unsure_of), inverse))[:, :2, :2]
-    usual = np.eye(2) / physics.SLIP_M**2
-    # Where readings tell nothing of a step, rounding is all that is left.
-    felt = np.linalg.eigvalsh(told)[:, 0] > NOTHING
-    told = np.where(felt[:, None, None], told, 0.0)
-    off = np.linalg.solve(told + usual, pulled)
-    size = np.linalg.det(np.eye(2) + physics.SLIP_M**2 * told)
-    gain = 0.5 * (pulled * off).sum(axis=(1, 2)) - 0.5 * np.log(size)
-    return np.where(felt, gain, -np.inf), off[:, :, 0]
+    count, size = motion.residual.shape
+    gain, off, pulled, told = np.empty(count), np.empty((count, 2)), np.empty(2), np.empty((2, 2))
+    usual = 1.0 / SLIP_M**2
+    for i in range(count):
+        known, doubt = motion.information[i], unsure_of[i]
+        for r in range(2):
+            pulled[r] = 0.0
+            for j in range(size):
+                pulled[r] += known[r, j] * motion.residual[i, j]
+            for c in range(r + 1):
+                told[r, c] = known[r, c]
+                for j in range(size):
+                    for k in range(size):
+                        told[r, c] -= known[r, j] * doubt[j, k] * known[k, c]
+        mean, half, both = 0.5 * (told[0, 0] + told[1, 1]), 0.5 * (told[0, 0] - told[1, 1]), told[1, 0]
+        # Where readings tell nothing of a step, rounding is all that is left.
+        felt = mean - np.sqrt(half * half + both * both) > NOTHING
+        east, north = (told[0, 0] + usual, told[1, 1] + usual) if felt else (usual, usual)
+        both = both if felt else 0.0
+        size_of = east * north - both * both
+        off[i, 0] = (north * pulled[0] - both * pulled[1]) / size_of
+        off[i, 1] = (east * pulled[1] - both * pulled[0]) / size_of
+        gain[i] = 0.5 * (pulled[0] * off[i, 0] + pulled[1] * off[i, 1]) - 0.5 * np.log(size_of / usual**2)
+        if not felt:
+            gain[i] = -np.inf
+    return gain, off
 
 
 def find_slips(problem: Problem, solved: Solved, found: Array, ahead: Array) -> list[Slip]:
@@ -91,9 +132,7 @@ def find_slips(problem: Problem, solved: Solved, found: Array, ahead: Array) -> 
         motion = solved.motions[i]
         if walk.way is None or not len(motion.noise):
             continue
-        now = slice(walk.first, walk.last)
-        covariance = unsure(motion, found[now, i], found[walk.first + 1 : walk.last + 1, i], ahead[now, i])
-        gain, off = gains(motion, covariance)
+        gain, off = gains(motion, unsure(motion, found, ahead, i, walk.first))
         times = problem.layout.times[walk.first : walk.last + 1, i]
         middle = 0.5 * (times[:-1] + times[1:])
         while len(gain) and gain.max() > physics.SLIP_RARE:

@@ -114,7 +114,7 @@ def test_the_gain_is_what_the_slip_adds_to_the_marginal_likelihood() -> None:
     solved.chain.solve()
     found, ahead, _ = solved.chain.covariances()
     motion = solved.motions[0]
-    gain, _ = gains(motion, unsure(motion, found[:-1, 0], found[1:, 0], ahead[:, 0]))
+    gain, _ = gains(motion, unsure(motion, found, ahead, 0, 0))
     k = int(gain.argmax())
     times = problem.layout.times[:, 0]
     admit(state, [Slip(problem.layout.walks[0].number, float(times[k + 1]) - 1e-6, (0.0, 0.0))])
