@@ -154,22 +154,25 @@ def add_motion(
     """
     m, size = residual.shape
     at, last = block * size, wide.shape[2] - 1
-    pulled = np.empty((size, size))
+    pulled, square = np.empty((size, size)), np.empty((size, size))
     for step in range(m):
         before, after = first + step, first + step + 1
         known, way = information[step], transition[step]
+        pulled[:], square[:] = 0.0, 0.0
+        # Most of F is nil.
+        for i in range(size):
+            for r in range(size):
+                if way[i, r] != 0.0:
+                    for c in range(size):
+                        pulled[r, c] += way[i, r] * known[i, c]
+        for i in range(size):
+            for c in range(size):
+                if way[i, c] != 0.0:
+                    for r in range(size):
+                        square[r, c] += pulled[r, i] * way[i, c]
         for r in range(size):
             for c in range(size):
-                total = 0.0
-                for i in range(size):
-                    total += way[i, r] * known[i, c]
-                pulled[r, c] = total
-        for r in range(size):
-            for c in range(size):
-                total = 0.0
-                for i in range(size):
-                    total += pulled[r, i] * way[i, c]
-                diagonal[before, at + r, at + c] += total
+                diagonal[before, at + r, at + c] += square[r, c]
                 diagonal[after, at + r, at + c] += known[r, c]
                 link[before, block, c, r] -= pulled[r, c]
                 wide[before, at + r, last] += pulled[r, c] * residual[step, c]
