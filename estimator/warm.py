@@ -18,7 +18,7 @@ from estimator.measurements.displacement import move
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.bent import add_bends
-from estimator.smoothing.ends import Nodes, Table, place_ends, stand
+from estimator.smoothing.ends import Nodes, Table, lay_out, place_ends, stand
 from estimator.smoothing.learn import noise_scores
 from estimator.smoothing.linear import ANY, Readings, jacobians, residuals
 from estimator.smoothing.slips import gains, unsure
@@ -69,7 +69,7 @@ def _warm_chain() -> None:
     place_ends(end, x)
     nodes = Nodes(slab, slab, slab, place)
     stand(nodes, slab, one, np.zeros(1, dtype=np.bool_), rest, place, np.zeros((1, 2), dtype=np.int64))
-    sums_between(0.0, one, between, one, one)
+    lay_out(slab, sums_between(0.0, one, between, one, one), place, place, place)
     pair = np.zeros((1, 2), dtype=np.int64)
     readings = Readings(slab, one, one, pair, end, end, slab, one, end, end, end)
     residuals(readings, x)

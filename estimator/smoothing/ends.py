@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from estimator.graph.dense import Array
+from estimator.graph.dense import Array, Indices
 from estimator.graph.kernels import Integers
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.walks import STATES, lead
@@ -192,6 +192,23 @@ def stand(
     return Stood(kind, slab, columns, flat, fixed, since, usable)
 
 
+@njit(cache=True)
+def lay_out(mine: Indices, found: Array, delta_m: Array, moment: Array, unsure_m2: Array) -> None:
+    """Put what some ends have walked since their keyframes where it belongs.
+
+    Args:
+        mine: which of m ends.
+        found: sums of each of those; see `walks.Way.between`.
+        delta_m: see `Table`, m × 3, changed.
+        moment: see `Table`, m × 3, changed.
+        unsure_m2: see `Ends`, m × 3, changed.
+    """
+    for row, at in enumerate(mine):
+        for c in range(3):
+            delta_m[at, c], moment[at, c] = found[row, c], found[row, 3 + c]
+            unsure_m2[at, c] = abs(found[row, 6 if c < 2 else 7])
+
+
 class Ends:
     """m ends of readings.
 
@@ -223,8 +240,7 @@ class Ends:
             mine = np.flatnonzero(numbers == walk.number)
             if walk.way is not None and len(mine):
                 found = walk.way.between(stood.since_t[mine], t[mine])
-                delta_m[mine], moment[mine] = found[:, :3], found[:, 3:6]
-                self.unsure_m2[mine] = np.abs(found[:, [6, 6, 7]])
+                lay_out(mine, found, delta_m, moment, self.unsure_m2)
         self.moving = (stood.kind == UNIT) | (stood.kind == FREE)
         self.table = Table(stood.kind, stood.flat, stood.fixed_m, delta_m, moment, t - stood.since_t)
 

@@ -98,8 +98,9 @@ class Rows:
         pairs = layout.state.ledger.table("pairs")
         pairs = pairs[pairs[:, 0] >= since_t]
         numbers = pairs[:, 2:4].astype(np.int64)
-        unitless = (self._nodes.kind[numbers] != UNIT).all(axis=1)
-        a, b = (Ends(layout, numbers[:, i], pairs[:, 0], unitless, self._nodes) for i in (0, 1))
+        unitless = self._nodes.kind[numbers] != UNIT
+        nearest = unitless[:, 0] & unitless[:, 1]
+        a, b = (Ends(layout, numbers[:, i], pairs[:, 0], nearest, self._nodes) for i in (0, 1))
         extra = np.full((len(pairs), 2), -1, dtype=np.int64)
         for (kind, source), start in layout.technologies.items():
             mine = (pairs[:, 1] == (RANGE if kind == "range" else RSSI)) & (pairs[:, 6] == source)
@@ -117,8 +118,8 @@ class Rows:
         outside = np.array(
             [nodes[name].role in physics.OUTSIDE_ROLES for name in layout.state.owners], dtype=bool
         )
-        both = self.pairs[:, 2:4].astype(np.int64)
-        self._inside = (self.pairs[:, 1] <= RSSI) & ~outside[both].any(axis=1)
+        off = outside[self.pairs[:, 2:4].astype(np.int64)]
+        self._inside = (self.pairs[:, 1] <= RSSI) & ~(off[:, 0] | off[:, 1])
 
     def _singles(self, layout: Layout, since_t: float) -> None:
         singles = layout.state.ledger.table("singles")
