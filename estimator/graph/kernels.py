@@ -8,6 +8,9 @@ from estimator.graph.dense import Array
 
 Integers = NDArray[np.int64]
 
+NARROW = 6
+"""Keyframes of so few numbers are eliminated faster by plain loops than by calls of BLAS."""
+
 
 @njit(cache=True)
 def half_inverse(matrix: Array) -> bool:
@@ -68,6 +71,8 @@ def eliminate(first: int, last: int, diagonal: Array, link: Array, wide: Array) 
         The keyframe that could not be eliminated, as it is after those before it; `last`: there is none.
     """
     length, width, across = wide.shape
+    if width <= NARROW:
+        return eliminate_narrow(first, last, diagonal, link, wide)
     inverse, half = np.empty((width, width)), np.empty((width, width))
     done, lost, taken = np.empty((width, across)), np.empty((width, width)), np.empty((width, across))
     turned = np.zeros((width, width))
@@ -85,6 +90,45 @@ def eliminate(first: int, last: int, diagonal: Array, link: Array, wide: Array) 
             np.dot(half.T, done, taken)
             diagonal[j + 1] -= lost
             wide[j + 1] -= taken
+    return last
+
+
+@njit(cache=True)
+def eliminate_narrow(first: int, last: int, diagonal: Array, link: Array, wide: Array) -> int:
+    """`eliminate` for keyframes of few numbers."""
+    length, width, across = wide.shape
+    size = link.shape[2]
+    inverse, half = np.empty((width, width)), np.empty((width, width))
+    for j in range(first, last):
+        inverse[:] = diagonal[j]
+        if not half_inverse(inverse):
+            return j
+        diagonal[j] = inverse
+        # W from below: the rows above are still what they were.
+        for r in range(width - 1, -1, -1):
+            share = inverse[r, r]
+            for i in range(across):
+                wide[j, r, i] *= share
+            for c in range(r):
+                share = inverse[r, c]
+                for i in range(across):
+                    wide[j, r, i] += share * wide[j, c, i]
+        if j == length - 1:
+            break
+        half[:] = 0.0
+        for r in range(width):
+            for c in range(r + 1):
+                block, share = c // size, inverse[r, c]
+                at = block * size
+                for i in range(size):
+                    half[r, at + i] += share * link[j, block, i, c - at]
+        for a in range(width):
+            for r in range(width):
+                share = half[r, a]
+                for i in range(width):
+                    diagonal[j + 1, a, i] -= share * half[r, i]
+                for i in range(across):
+                    wide[j + 1, a, i] -= share * wide[j, r, i]
     return last
 
 
