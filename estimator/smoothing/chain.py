@@ -62,8 +62,9 @@ class Chain:
 
     def _corner(self) -> tuple[Array, Array]:
         """C, s × s, and the border's gradient, s."""
-        corner, gradient = np.zeros((self.lasting, self.lasting)), np.zeros(self.lasting)
-        for strand in self.strands:
+        *moving, rest = self.strands  # the last one has all of the border
+        corner, gradient = rest.corner.copy(), rest.corner_gradient.copy()
+        for strand in moving:
             lasting = strand.group.lasting
             corner[lasting[:, None], lasting] += strand.corner
             gradient[lasting] += strand.corner_gradient
@@ -90,11 +91,14 @@ class Chain:
         matrix[self.width :, self.width :], vector[self.width :] = self._corner()
         return Remainder(0.5 * (matrix + matrix.T), vector)
 
-    def solve(self, mend: bool = True) -> tuple[Array, Array]:
-        """The step of all keyframes, k × n, and of the border, s; the arrays are used up.
+    def reduce(self, mend: bool = True) -> Array:
+        """Eliminate all keyframes and factorise what is left of the border: all that `covariances` needs.
 
         Args:
             mend: whether what is not positive definite is for rounding to answer for.
+
+        Returns:
+            What is left of the border's gradient, s.
 
         Raises:
             ValueError: the matrix is not finite, or far from positive definite.
@@ -108,6 +112,18 @@ class Chain:
             if not mend:
                 raise
             self._cholesky = factorise(mended(corner))
+        return gradient
+
+    def solve(self, mend: bool = True) -> tuple[Array, Array]:
+        """The step of all keyframes, k × n, and of the border, s; the arrays are used up.
+
+        Args:
+            mend: whether what is not positive definite is for rounding to answer for.
+
+        Raises:
+            ValueError: the matrix is not finite, or far from positive definite.
+        """
+        gradient = self.reduce(mend)
         fixed = solve(self._cholesky, gradient)
         steps = np.zeros((self._length, self.width))
         for strand in self.strands:
@@ -135,7 +151,7 @@ class Chain:
         return found, fixed
 
     def covariances(self) -> tuple[Array, Array, Array]:
-        """After `solve`: covariances of the walks and of the border.
+        """After `reduce` or `solve`: covariances of the walks and of the border.
 
         Returns:
             Of each walk at each keyframe, k × walks × b × b; of each with itself at the next keyframe,

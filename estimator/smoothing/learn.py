@@ -33,13 +33,13 @@ def learn(state: FusionState, problem: Problem, solved: Solved, step: float = ST
     Args:
         state: takes what is learned.
         problem: of the window.
-        solved: its solution, whose chain is solved here.
+        solved: its solution, whose chain is eliminated here.
         step: farthest that the logarithm of a variance moves at once.
 
     Returns:
         Covariance of each walk at each keyframe, k × walks × 6 × 6.
     """
-    solved.chain.solve()
+    solved.chain.reduce()
     found, ahead, border = solved.chain.covariances()
     learn_walks(state, problem, solved, found, ahead, step)
     if solved.rests:
