@@ -84,9 +84,7 @@ class Layout:
             last = min(max(int(np.searchsorted(self.grid, end_t, side="left")), first), last)
         way = None
         if unit:
-            steps = self.state.ledger.table("steps")
-            mine = steps[steps[:, 1] == node.index]
-            mine = mine[np.argsort(mine[:, 0], kind="stable")]
+            mine = own_rows(self.state.ledger.table("steps"), node.index)
             way = Way(float(mine[0, 2]) if len(mine) else start, mine, node.walk_factors)
         return Walk(node.index, node, first, last, way, begin_t >= self.since_t)
 
@@ -115,10 +113,10 @@ class Layout:
         keyframes = x[: self.length * self.width].reshape(self.length, self.width)
         poses = self.state.ledger.table("poses")
         for i, walk in enumerate(self.walks):
-            mine = poses[poses[:, 1] == walk.number]
-            mine = mine[np.argsort(mine[:, 0], kind="stable")]
+            mine = own_rows(poses, walk.number)
             other = (mine[:, 2] == 1.0) != (walk.way is not None)
             if other.any():
+                mine = mine.copy()
                 mine[other, 6:] = mine[~other][0, 6:] if not other.all() else 0.0
             if len(mine):
                 alive = slice(walk.first, walk.last + 1)
@@ -145,3 +143,16 @@ def technology_key(state: FusionState, variable: Variable) -> Key:
     """The block of a technology's states, by number of its source."""
     name = variable.owner if variable.kind == "range" else f"rssi {variable.owner}"
     return variable.kind, state.source(name)
+
+
+def own_rows(table: Array, number: int) -> Array:
+    """A node's rows of a table of the ledger, in order of epoch; the table itself where that is all of them.
+
+    Args:
+        table: m × c: epochs first (s), then the node's number.
+        number: of the node.
+    """
+    own = table[:, 1] == number
+    rows = table if own.all() else table[own]
+    t = rows[:, 0]
+    return rows if (t[:-1] <= t[1:]).all() else rows[np.argsort(t, kind="stable")]
