@@ -8,6 +8,7 @@ fire.
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from estimator.fusion.ledger import RANGE, RSSI
 from estimator.fusion.modes import CAUCHY, Sought, find_modes
@@ -19,13 +20,15 @@ from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.solve import Problem, Solved
 
+Flags = NDArray[np.bool_]
+
 RECENT_S = 120.0
 READINGS_MIN = 5
 SUSPICION = 6.0
 """How much worse than usual, in log likelihood, readings are together before another place is looked for."""
 USUAL_COST = 1.0
-GAIN = 12.0
-"""How much better the other place must explain them: odds of 1 to 100,000 for one more place."""
+GAIN = 10.0
+"""How much better the other place must explain them: odds of 1 to 20,000 for one more place."""
 FAR_M = 1.5
 UNSURE_M = 0.3
 UP_SIGMA_M = 1.0
@@ -82,10 +85,20 @@ def moved_nodes(problem: Problem, solved: Solved) -> tuple[list[Moved], bool]:
             suspected = True
             continue
         # What drew the node off its place may be the newest readings, and what disagrees all the others.
-        newest = _disagreeing(cauchy_cost(seen.residual_at(place) / seen.sought.sigma, CAUCHY))
+        newest = _disagreeing(seen.costs(seen.residual_at(place)))
         since_t = float(seen.t[0 if newest is None else newest])
         found.append(Moved(node.node, since_t, int((rows.pairs[mine, 0] >= since_t).sum())))
     return found, suspected
+
+
+def _costs(residual: Array, sigma: Array, ranged: Flags, alike: Array) -> Array:
+    """How much readings are worse than perfect ones, each in log likelihood.
+
+    A wall makes all ranges too long that are measured through it. k of them that may share it are neither k
+    witnesses nor one: they count as 2 √k.
+    """
+    cost: Array = cauchy_cost(residual / sigma, CAUCHY)
+    return np.where(ranged & (residual > 0.0), cost / np.sqrt(alike), cost)
 
 
 def _disagreeing(cost: Array) -> int | None:
@@ -105,12 +118,19 @@ class _Seen(NamedTuple):
         sought: what they say.
         place_m: where the node is thought to be, 3 (m).
         residual: of the readings there, m.
+        alike: how many readings share an error, as each counts, m.
     """
 
     t: Array
     sought: Sought
     place_m: Array
     residual: Array
+    alike: Array
+
+    def costs(self, residual: Array) -> Array:
+        """What the readings cost with residuals, each in log likelihood."""
+        ranged = np.full(len(residual), self.sought.kind == "range")
+        return _costs(residual, self.sought.sigma, ranged, self.alike)
 
     def residual_at(self, place_m: Array) -> Array:
         """Residuals of the readings if the node were at a place (3, m), m."""
@@ -146,7 +166,7 @@ def _seen(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> 
         extra=solved.x[start : start + 2],
         extra_covariance=np.diag([1e-6, 1e-6]),
     )
-    return _Seen(rows.pairs[mine, 0], sought, place, solved.linear.residual[mine])
+    return _Seen(rows.pairs[mine, 0], sought, place, solved.linear.residual[mine], rows.alike[mine])
 
 
 def _elsewhere(seen: _Seen) -> Array | None:
@@ -155,9 +175,10 @@ def _elsewhere(seen: _Seen) -> Array | None:
     if not modes:
         return None
     best = modes[0]
-    before = float(cauchy_cost(seen.residual / seen.sought.sigma, CAUCHY).sum())
+    before = float(seen.costs(seen.residual).sum())
+    after = float(seen.costs(seen.residual_at(best.position_m)).sum())
     far = float(np.hypot(*(best.position_m - seen.place_m)[:2])) > max(FAR_M, 2.0 * best.sigma_m)
-    return best.position_m if far and before - best.cost > GAIN and best.cost < len(seen.t) else None
+    return best.position_m if far and before - after > GAIN and after < len(seen.t) else None
 
 
 def changed_links(problem: Problem) -> list[Changed]:

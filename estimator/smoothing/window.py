@@ -36,9 +36,11 @@ SOONEST_S = 3.0
 YOUNG = 0.06
 """A window is solved again when it has grown by this much of its length: what is young still bends."""
 BENT_M = 1.0
+JOLT_M = 2.0
+"""A tick that bends the map by more is not left linearised for seconds: it may be a kicked breadcrumb's."""
 CALM = 4.0
 """Periods after which the window is solved again though nothing has bent it."""
-SUSPENSE = 0.5
+SUSPENSE = 0.25
 """Periods after which it is solved again where a breadcrumb may lie elsewhere."""
 GONE = 8.0
 """A window this many times as long as it may be is begun anew."""
@@ -65,7 +67,7 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
     turned = any(node.turned for node in state.nodes.values())
     age = (t - state.refreshed_t) / (rarer * period_s(state))
     waited = age >= CALM or (age >= 1.0 and state.bent_m > BENT_M)
-    waited = waited or (state.suspected and age >= SUSPENSE)
+    waited = waited or (state.suspected and age >= SUSPENSE) or state.bent_m > JOLT_M
     if not (state.due or turned or waited):
         return
     state.due, state.refreshed_t, state.bent_m = False, t, 0.0

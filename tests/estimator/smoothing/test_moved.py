@@ -132,3 +132,9 @@ def test_a_fire_between_breadcrumbs_is_told_as_changed_links_and_moves_nothing()
 def test_where_nothing_is_kicked_nothing_is_said_to_have_moved() -> None:
     notices, _ = followed(scenario("paper-a", 3), 400.0)
     assert not [n for n in notices if n.code in ("node_moved", "link_changed")]
+
+
+@pytest.mark.parametrize("seed", [2, 4, 6])
+def test_walls_that_make_ranges_too_long_have_moved_no_breadcrumb(seed: int) -> None:
+    notices, _ = followed(scenario("heavy-obstruction", seed), 300.0)
+    assert not [n for n in notices if n.code == "node_moved"]
