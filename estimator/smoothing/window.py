@@ -67,7 +67,7 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
     turned = any(node.turned for node in state.nodes.values())
     age = (t - state.refreshed_t) / (rarer * period_s(state))
     waited = age >= CALM or (age >= 1.0 and state.bent_m > BENT_M)
-    waited = waited or (state.suspected and age >= SUSPENSE) or state.bent_m > JOLT_M
+    waited = waited or (state.suspected and age >= SUSPENSE) or state.bent_m > JOLT_M * rarer
     if not (state.due or turned or waited):
         return
     state.due, state.refreshed_t, state.bent_m = False, t, 0.0
