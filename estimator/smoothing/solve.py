@@ -16,7 +16,7 @@ from estimator.smoothing.groups import Groups
 from estimator.smoothing.layout import Layout, Walk
 from estimator.smoothing.priors import own_priors
 from estimator.smoothing.rows import Linearised, Rows
-from estimator.smoothing.walks import STATES, Free, Motion, free_motions, misfit, unit_motion
+from estimator.smoothing.walks import STATES, Free, Motion, free_motions, misfit, reckon, unit_motion
 
 ACCEPTED = 1e-3
 """Rise of the negative log likelihood that counts as rounding."""
@@ -108,6 +108,18 @@ class Problem:
             else:
                 found.append(unit_motion(between, durations, states))
         return found
+
+    def reckoned(self, x: Array, since_t: float) -> Array:
+        """An estimate whose units have gone their own way since an epoch, flat."""
+        layout, there = self.layout, x.copy()
+        keyframes = there[: layout.length * layout.width].reshape(layout.length, layout.width)
+        for i, (walk, (durations, between)) in enumerate(zip(layout.walks, self._ways, strict=True)):
+            if not isinstance(between, Free):
+                times = layout.times[walk.first : walk.last + 1, i]
+                known = max(int(np.searchsorted(times, since_t, side="right")) - 1, 0)
+                states = keyframes[walk.first : walk.last + 1, STATES * i : STATES * (i + 1)]
+                reckon(states, between, durations, known)
+        return there
 
     def cost(self, x: Array, residual: Array, motions: list[Motion]) -> float:
         """Negative log likelihood up to a constant: mixtures of the readings, motion, priors."""
@@ -257,12 +269,12 @@ class Problem:
         for iteration in range(iterations):
             slack = slacks_m[iteration] if iteration < len(slacks_m) else 0.0
             step, promised = self._step(x, linear, motions, slack, damping, near and slack == 0.0)
-            there = self._there(x + step)
+            there = self.at(x + step)
             if slack == 0.0 and promised > resting:
                 # The parabola through the cost here, its slope and the cost there: where it is lowest.
                 share = promised / max(2.0 * promised - (cost - there.cost), promised / FARTHEST)
                 if abs(share - 1.0) > CLOSE:
-                    there = min(there, self._there(x + max(share, LEAST_SHARE) * step), key=lambda p: p.cost)
+                    there = min(there, self.at(x + max(share, LEAST_SHARE) * step), key=lambda p: p.cost)
             if slack == 0.0 and not there.cost <= cost + ACCEPTED:
                 # The parabola reaches farther than it holds: shorter steps, and more along the slope.
                 damping = max(10.0 * damping, LEAST_DAMPING)
@@ -280,6 +292,7 @@ class Problem:
         chain = self.assemble(x, linear, weighted, motions)
         return Solved(x, chain, linear, weighted, motions, cost, rests)
 
-    def _there(self, x: Array) -> There:
+    def at(self, x: Array) -> There:
+        """What there is at an estimate."""
         residual, motions = self.rows.residual(x), self.motions(x)
         return There(x, residual, motions, self.cost(x, residual, motions))

@@ -184,6 +184,25 @@ def led_by(before: Array, delta_m: Array, moment: Array, durations_s: Array) -> 
 
 
 @njit(cache=True)
+def reckon(states: Array, between: Array, durations_s: Array, known: int) -> None:
+    """Put the keyframes after a known one where a unit's own way leads to.
+
+    Args:
+        states: position, ψ, β, s − 1 at k + 1 keyframes; those after `known` are changed.
+        between: sums of each step, k × 12 (see `Way.between`).
+        durations_s: of each step, k.
+        known: the last keyframe that is known.
+    """
+    for k in range(known, len(durations_s)):
+        led = lead(states[k, 3], states[k, 4], 1.0 + states[k, 5], between[k, :3], between[k, 3:6])
+        states[k + 1] = states[k]
+        states[k + 1, 0] += led.east
+        states[k + 1, 1] += led.north
+        states[k + 1, 2] += led.up
+        states[k + 1, 3] += states[k, 4] * durations_s[k]
+
+
+@njit(cache=True)
 def inverses(matrices: Array) -> Array:
     """Inverses of symmetric positive definite matrices, m × n × n, exactly symmetric."""
     count, n, _ = matrices.shape

@@ -70,14 +70,19 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
     waited = waited or (state.suspected and age >= SUSPENSE) or state.bent_m > JOLT_M * rarer
     if not (state.due or turned or waited):
         return
+    solved_t = state.refreshed_t
     state.due, state.refreshed_t, state.bent_m = False, t, 0.0
-    if refresh(state) and state.due:
+    if refresh(state, solved_t) and state.due:
         state.due = False
-        refresh(state)
+        refresh(state, t)
 
 
-def refresh(state: FusionState) -> bool:
+def refresh(state: FusionState, solved_t: float) -> bool:
     """Solve the window again, and go on from its solution.
+
+    Args:
+        state: the fusion, changed in place.
+        solved_t: when it was last solved (s).
 
     Returns:
         False where it has none: the filter goes on as it was.
@@ -95,7 +100,7 @@ def refresh(state: FusionState) -> bool:
         rows = Rows(layout, since)
         rows.learn(state.noise)
         problem = Problem(layout, rows, state.prior)
-        solved = _best(problem, layout.start())
+        solved = _solved(problem, layout.start(), solved_t)
         trimmed = trim(problem, solved)
         left = solved.chain.remainder(layout.length - 1)
         settle(state, layout, solved, left.matrix)
@@ -119,6 +124,24 @@ def period_s(state: FusionState) -> float:
     span = state.newest_t - (state.newest_t if state.window_t is None else state.window_t)
     usual = min(max(YOUNG * span, SOONEST_S), PERIOD_S)
     return usual * max(1.0, SHORTEST_S / spacing_s(state) * work(state) / WORK)
+
+
+def _solved(problem: Problem, x: Array, solved_t: float) -> Solved:
+    """The solution from where the filter has led to, or from where the units' own ways have.
+
+    The filter may have turned the map, of which what was solved before knows nothing: the kink between the
+    two can bend everything, and turn the map further with each solution.
+
+    Args:
+        problem: of the window.
+        x: where the filter has led to, flat.
+        solved_t: when the window was last solved (s).
+    """
+    solved = _best(problem, x)
+    reckoned = problem.reckoned(x, solved_t)
+    if problem.at(reckoned).cost >= solved.cost:
+        return solved
+    return min(solved, _best(problem, reckoned), key=lambda found: found.cost)
 
 
 def _best(problem: Problem, x: Array) -> Solved:
