@@ -22,7 +22,7 @@ from estimator.smoothing.ends import Nodes, Table, lay_out, place_ends, stand
 from estimator.smoothing.learn import noise_scores
 from estimator.smoothing.linear import ANY, Readings, jacobians, residuals
 from estimator.smoothing.slips import gains, unsure
-from estimator.smoothing.walks import STATES, inverses, led_by, misfit, sums_between, unit_motion
+from estimator.smoothing.walks import STATES, inverses, led_by, misfit, reckon, sums_between, unit_motion
 
 
 def warm_up() -> None:
@@ -58,6 +58,7 @@ def _warm_chain() -> None:
     noise_scores(motion, doubt)
     gains(motion, doubt)
     inverses(motion.noise)
+    reckon(np.zeros((k, 2 * n))[:, :n], between, one, 0)
     led_by(states, np.zeros((k, 12))[:, :3], np.zeros((k, 12))[:, 3:6], np.ones(k))
     add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)
     eliminate(0, k, diagonal, link, wide)

@@ -12,11 +12,10 @@ from estimator.fusion.state import FusionState
 from estimator.fusion.tick import flush, fold_tick, keep_poses
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
-from estimator.measurements.node import Node
 from estimator.measurements.position import Position
 from estimator.smoothing import learn, walks
 from estimator.smoothing.solve import Solved
-from tests.estimator.smoothing.windows import problem_of, unlikelihood
+from tests.estimator.smoothing.windows import entered, problem_of, unlikelihood
 
 FIX_M, FIX_S = 0.02, 2
 """Fixes at keyframes only: what a unit errs between a keyframe and a reading after it is not modelled."""
@@ -29,16 +28,7 @@ def walked(seconds: int, factors: tuple[float, float], seed: int = 1) -> FusionS
     """A unit with so many times the assumed variances walks about, with a sharp fix at each keyframe."""
     chance = np.random.default_rng(seed)
     place, heading_error = np.zeros(3), 0.0
-    readings: list[AnyReading] = [
-        Node(
-            t=0.0,
-            node="ff1",
-            role="responder",
-            position_m=(0.0, 0.0, 0.0),
-            sigma_m=0.05,
-            heading_sigma_rad=0.01,
-        )
-    ]
+    readings: list[AnyReading] = [entered()]
     for second in range(1, seconds + 1):
         heading_error += math.sqrt(0.5 * factors[1] * TURN) * chance.normal()
         direction = 0.1 * second + 2.0 * math.sin(0.03 * second)

@@ -8,7 +8,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node, Role
 from estimator.measurements.range import Range
-from tests.estimator.smoothing.windows import fused, problem_of
+from tests.estimator.smoothing.windows import entered, fused, problem_of
 
 
 def stood(role: Role, seconds: int = 200) -> list[AnyReading]:
@@ -16,14 +16,7 @@ def stood(role: Role, seconds: int = 200) -> list[AnyReading]:
     chance = np.random.default_rng(5)
     readings: list[AnyReading] = [
         Node(t=0.0, node="other", role=role, position_m=(8.0, 0.0, 0.0), sigma_m=0.05),
-        Node(
-            t=0.0,
-            node="ff1",
-            role="responder",
-            position_m=(0.0, 0.0, 0.0),
-            sigma_m=0.05,
-            heading_sigma_rad=0.01,
-        ),
+        entered(),
     ]
     for second in range(1, seconds + 1):
         readings.append(

@@ -13,7 +13,7 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.smoothing.slips import Slip, admit, find_slips, gains, unsure
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.smoothing.windows import fused, problem_of, unlikelihood
+from tests.estimator.smoothing.windows import entered, fused, problem_of, unlikelihood
 
 ANCHORS = {"north": (0.0, 30.0, 2.0), "east": (30.0, -5.0, 2.0), "west": (-25.0, -10.0, 2.0)}
 SECONDS, AT_S, RANGE_M = 120, 61, 0.1
@@ -37,13 +37,10 @@ def walk(
         seed: of the noise.
     """
     chance = np.random.default_rng(seed)
-    first = (*place(0.0).tolist(), 0.0)
     readings: list[AnyReading] = [
         Node(t=0.0, node=name, role="anchor", position_m=at, sigma_m=0.01) for name, at in ANCHORS.items()
     ]
-    readings.append(
-        Node(t=0.0, node="ff1", role="responder", position_m=first, sigma_m=0.05, heading_sigma_rad=0.01)
-    )
+    readings.append(entered(*place(0.0).tolist()))
     for second in range(1, SECONDS + 1):
         delta = place(second) - place(second - 1.0) + chance.normal(0.0, 0.03, 2)
         delta += np.array(slipped) * (second == AT_S)

@@ -10,6 +10,7 @@ from estimator.fusion.prior import Prior
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
+from estimator.measurements.node import Node
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.extent import spacing_s
 from estimator.smoothing.layout import Layout
@@ -17,6 +18,12 @@ from estimator.smoothing.rows import Rows
 from estimator.smoothing.solve import Problem, Solved
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import online_pass
+
+
+def entered(east_m: float = 0.0, north_m: float = 0.0) -> Node:
+    """ff1 enters at a known place, facing where its unit says."""
+    place = (east_m, north_m, 0.0)
+    return Node(t=0.0, node="ff1", role="responder", position_m=place, sigma_m=0.05, heading_sigma_rad=0.01)
 
 
 def fused(readings: Sequence[AnyReading]) -> FusionState:
