@@ -44,7 +44,7 @@ def build(seed: int) -> Scenario:
     for gateway, own in crumbs.items():
         readings: list[AnyReading] = introduce_dropped(own)
         for node in (node for node, its in CREWS.items() if its == gateway):
-            readings.append(introduce(node, tracks[node], node[:2]))
+            readings.append(introduce(node, tracks[node], rng, node[:2]))
             readings += measured(node, radios, DURATION_S, rng, Kit(site=IN_THE_OFFICE))
         sent = reported(readings, gateway, rng)
         reports += [_held_up(report) for report in sent] if gateway == "ladder-3" else sent

@@ -63,7 +63,7 @@ def build(seed: int) -> Scenario:
     radios = radios_of(tracks | {"base": base}, crumbs.values(), {burnt: BURNT_S})
     radios[LOST] = replace(radios[LOST], silent_s=LOST_S)
     readings: list[AnyReading] = [introduce_base(), UAV]
-    readings += [introduce(node, truth, node[:2]) for node, truth in tracks.items()]
+    readings += [introduce(node, truth, rng, node[:2]) for node, truth in tracks.items()]
     readings += introduce_dropped(crumbs.values(), {"E7-1": "E7", "L3-1": "L3"})
     readings += _story(burnt) + _flight(uav, tracks, rng)
     readings += list(pressure_readings("base", base, np.arange(0.0, DURATION_S, 5.0), rng, 0.0))

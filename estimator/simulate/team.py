@@ -65,9 +65,11 @@ def introduce_base() -> Node:
     return Node(t=0.0, node="base", role="base", callsign="Command post", position_m=(0.0, 0.0, 0.0))
 
 
-def introduce(node: str, truth: TrueTrack, crew: str | None = None) -> Node:
-    """A responder who lines up at the door, at a place known to half a metre."""
-    east, north, up = (round(float(metres), 1) for metres in truth.position_m[0])
+def introduce(node: str, truth: TrueTrack, rng: np.random.Generator, crew: str | None = None) -> Node:
+    """A responder who lines up at the door, at a place on the ground known to half a metre."""
+    # A stream of its own: who stands where changes nothing in what is measured afterwards.
+    off_m = np.append(rng.spawn(1)[0].normal(0.0, START_SIGMA_M, 2), 0.0)
+    east, north, up = (round(float(metres), 2) for metres in truth.position_m[0] + off_m)
     return Node(
         t=0.0,
         node=node,

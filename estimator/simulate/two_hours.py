@@ -33,7 +33,7 @@ def build(seed: int) -> Scenario:
     crumbs = drop_along("b", "ff1", tracks["ff1"], rng, until_s=400.0)
     truth = tracks | {"base": base_track(DURATION_S)}
     radios = radios_of(truth, crumbs)
-    readings: list[AnyReading] = [introduce_base(), *(introduce(n, t, "E7") for n, t in tracks.items())]
+    readings: list[AnyReading] = [introduce_base(), *(introduce(n, t, rng, "E7") for n, t in tracks.items())]
     readings += introduce_dropped(crumbs)
     for node in tracks:
         readings += measured(node, radios, DURATION_S, rng, KIT)
