@@ -5,8 +5,10 @@ import numpy as np
 from estimator.fusion.descent import descend
 from estimator.fusion.free import free_motion
 from estimator.fusion.modes import Sought, find_modes
+from estimator.fusion.pair_rows import PAIR, pair_rows
 from estimator.fusion.rows import FIELDS, ONE
 from estimator.fusion.update import tally
+from estimator.fusion.way import offset
 from estimator.graph.dense import factorise, inverse
 from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute
 from estimator.graph.kirchhoff import Kirchhoff
@@ -91,8 +93,11 @@ def _warm_filter() -> None:
     table = np.full((1, FIELDS), 0.5)
     table[0, :2] = ONE, 0.0
     found = descend(table, graph.information.copy(), graph.vector, graph.reference, 1)
-    sums, told = np.zeros((1, 5)), (found.residual, found.predicted, found.good)
-    tally(table, *told, np.zeros(1, dtype=np.bool_), np.zeros(1), sums)
+    told = found.residual, found.predicted, found.good
+    tally(table, *told, np.zeros((1, 5)), np.zeros((1, 5)))
+    ends, marks = np.zeros((1, 13)), np.zeros((2, 4))
+    offset(ends[0], marks, graph.reference, 0.0)
+    pair_rows(np.zeros((1, PAIR)), np.zeros((1, PAIR)), ends, marks, np.zeros((1, 5)), graph.reference)
 
 
 if __name__ == "__main__":

@@ -10,11 +10,11 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from estimator.fusion import physics
-from estimator.fusion.held import path_loss_states, technology_states
 from estimator.fusion.introduce import NO_PRIOR_SIGMA_M, place
 from estimator.fusion.ledger import RANGE
 from estimator.fusion.modes import Mode, Sought, find_modes
 from estimator.fusion.nodes import NodeState
+from estimator.fusion.pairs import path_loss_states, technology_states
 from estimator.fusion.sightings import Sightings, of_node
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
@@ -49,7 +49,7 @@ def decide(state: FusionState) -> None:
             continue
         owner = state.sources[sightings.source]
         ranged = sightings.kind == RANGE
-        states = technology_states(state, owner) if ranged else path_loss_states(state, owner[len("rssi ") :])
+        states = technology_states(state, owner) if ranged else path_loss_states(state, owner)
         if covariance is None or len(covariance) != state.graph.size:
             covariance = state.graph.covariance()
         rows = state.graph.rows(states)

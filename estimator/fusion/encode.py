@@ -3,8 +3,9 @@
 import msgspec
 
 from estimator.fusion.ledger import COLUMNS
+from estimator.fusion.links import Link, Links
 from estimator.fusion.nodes import NodeState
-from estimator.fusion.noise import LearnedNoise, Link
+from estimator.fusion.noise import LearnedNoise
 from estimator.fusion.prior import Key, Prior
 from estimator.fusion.state import FusionState
 from estimator.graph.kirchhoff import Kirchhoff
@@ -31,7 +32,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     sightings: dict[str, int]
     waiting: tuple[AnyReading, ...]
     noise: dict[str, LearnedNoise]
-    links: dict[str, Link]
+    links: tuple[list[Link], ArrayRecord]
     reference_pa: float | None
     counts: dict[str, int]
     said: list[str]
@@ -62,7 +63,7 @@ def record_of(state: FusionState) -> FusionRecord:
         dict(state.sightings),
         state.waiting,
         dict(state.noise),
-        dict(state.links),
+        ([Link(*link) for link in state.links.numbers], pack(state.links.table)),
         state.reference_pa,
         dict(state.counts),
         list(state.said),
@@ -97,7 +98,9 @@ def state_of(record: FusionRecord) -> FusionState:
     state.sightings, state.waiting = record.sightings, record.waiting
     state.noise, state.reference_pa, state.counts = record.noise, record.reference_pa, record.counts
     state.said, state.tried = dict.fromkeys(record.said), record.tried
-    state.links, state.owners, state.sources = record.links, record.owners, record.sources
+    links, newest = record.links
+    state.links = Links({link: number for number, link in enumerate(links)}, unpack(newest))
+    state.owners, state.sources = record.owners, record.sources
     for name in COLUMNS:
         state.ledger.replace(name, unpack(record.tables[name]))
     state.newest_t, state.due, state.begun_t = record.newest_t, record.due, record.begun_t

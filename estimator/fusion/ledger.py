@@ -28,7 +28,7 @@ RANGE, RSSI, BEARING, BODY_BEARING = range(4)
 """Kinds of pairs; the last two are bearings in the local frame and in the body frame of `a`."""
 
 MERGED = 64
-"""Chunks of a table that are joined to one when there are more."""
+"""Chunks of a table, the newest of which are joined to one when there are more."""
 
 
 class Ledger:
@@ -57,16 +57,36 @@ class Ledger:
         """Append one row."""
         self._open[table].append(row)
 
+    def extend(self, table: Table, rows: Array) -> None:
+        """Append rows, m × the table's columns, which nobody changes afterwards."""
+        self._close(table)
+        self._append(table, rows)
+
     def close(self) -> None:
         """Close the open rows to chunks: what has been added until now."""
-        for name, rows in self._open.items():
-            if rows:
-                width = len(COLUMNS[name])
-                told = np.fromiter(chain.from_iterable(rows), np.float64, len(rows) * width)
-                self.chunks[name] = (*self.chunks[name], told.reshape(-1, width))
-                rows.clear()
-                if len(self.chunks[name]) > MERGED:
-                    self.chunks[name] = (np.concatenate(self.chunks[name]),)
+        for name in self._open:
+            self._close(name)
+
+    def _close(self, name: Table) -> None:
+        rows = self._open[name]
+        if rows:
+            width = len(COLUMNS[name])
+            told = np.fromiter(chain.from_iterable(rows), np.float64, len(rows) * width)
+            rows.clear()
+            self._append(name, told.reshape(-1, width))
+
+    def _append(self, name: Table, rows: Array) -> None:
+        chunks = (*self.chunks[name], rows)
+        if len(chunks) > MERGED:
+            # Older ones are joined only where they are no longer than the rest: copying all each time would
+            # take ever longer.
+            first = MERGED // 2
+            size = sum(len(chunk) for chunk in chunks[first:])
+            while first > 0 and len(chunks[first - 1]) <= size:
+                first -= 1
+                size += len(chunks[first])
+            chunks = (*chunks[:first], np.concatenate(chunks[first:]))
+        self.chunks[name] = chunks
 
     def table(self, name: Table) -> Array:
         """All rows of a table, m × columns, in the order in which they were added."""

@@ -14,7 +14,7 @@ from estimator.fusion.nodes import NodeState
 from estimator.fusion.physics import NOISES
 from estimator.fusion.rows import Single
 from estimator.fusion.state import FusionState
-from estimator.fusion.way import Marks
+from estimator.fusion.way import Mark
 from estimator.measurements.displacement import Displacement, move
 from estimator.measurements.node import MOVING_ROLES
 
@@ -189,7 +189,7 @@ def increment_of(node: NodeState, reading: Displacement) -> Increment | None:
     return Increment(after, (e, n, u), duration, noise, turn, too_fast)
 
 
-def _trail(node: NodeState, t: float, e: float, n: float, u: float) -> Marks:
+def _trail(node: NodeState, t: float, e: float, n: float, u: float) -> tuple[Mark, ...]:
     """A unit's trail with one displacement (m) more, without what is longer ago than `TRAIL_S`."""
     trail = node.trail or ((node.pose_t, 0.0, 0.0, 0.0),)
     _, last_e, last_n, last_u = trail[-1]

@@ -1,5 +1,6 @@
 """What the tracker keeps of each node beside its block in the Kirchhoff matrix."""
 
+from functools import lru_cache
 from typing import Literal
 
 import msgspec
@@ -63,17 +64,17 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     @property
     def position(self) -> Variable:
         """The block of its position."""
-        return Variable("position", self.node)
+        return _blocks(self.node)[0]
 
     @property
     def unit(self) -> Variable:
         """The block of its PDR unit's errors."""
-        return Variable("unit", self.node)
+        return _blocks(self.node)[1]
 
     @property
     def velocity(self) -> Variable:
         """The block of its velocity."""
-        return Variable("velocity", self.node)
+        return _blocks(self.node)[2]
 
     @property
     def decided(self) -> bool:
@@ -84,3 +85,9 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     def moving(self) -> bool:
         """Whether its position changes with time."""
         return self.mode in ("unit", "free")
+
+
+@lru_cache(maxsize=4096)
+def _blocks(node: str) -> tuple[Variable, Variable, Variable]:
+    """A node's blocks: each tick asks for all of them several times."""
+    return Variable("position", node), Variable("unit", node), Variable("velocity", node)

@@ -7,6 +7,7 @@ alike until an end has moved on. Taken for independent, they would make any esti
 import math
 
 import msgspec
+from numba import njit
 
 from estimator.fusion import physics
 
@@ -61,32 +62,7 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
         )
 
 
-class Link(msgspec.Struct, frozen=True, array_like=True):
-    """The newest reading on a link.
-
-    Attributes:
-        t: its epoch.
-        way_m: how far both ends had walked by then.
-        number: of the link in the ledger.
-        alike: how many readings, itself included, share its error.
-        kept: how much of the error before it still held, 0 to 1.
-        error: its error in units of the assumed sigma; None before it is fused.
-    """
-
-    t: float
-    way_m: float
-    number: int = -1
-    alike: float = 1.0
-    kept: float = 0.0
-    error: float | None = None
-
-    def next(self, t: float, way_m: float) -> "Link":
-        """The link at its next reading."""
-        moved, waited = abs(way_m - self.way_m), abs(t - self.t)
-        kept = math.exp(-moved / physics.SHARED_M - waited / physics.SHARED_S)
-        return Link(t, way_m, self.number, 1.0 + kept * self.alike, kept, self.error)
-
-
+@njit(cache=True, error_model="numpy")
 def link_sigma(factor: float, shared: float, nominal: float, alike: float) -> float:
     """Standard deviation to give to one reading of those that share an error.
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import chain
-from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -58,7 +57,7 @@ class Row(NamedTuple):
             none.
         constant: what is added to the first of them: reported heading (rad), sent power (dBm).
         source: number of the technology that its noise is learned for; −1: none.
-        link: number of its link among those of the tick; −1: none.
+        link: row of its link, see `links`; −1: none.
         a_e: where the end that measured stood at the reading's epoch, east of its block (m).
         a_n: the same, north.
         a_u: the same, up.
@@ -93,17 +92,24 @@ KIND, A, VALUE, SIGMA, OUTLIERS, SHIFT, SPREAD, NOMINAL, B, EXTRA, CONSTANT, SOU
 B_E = A_E + 3
 
 
-def table_of(starts: Mapping[Variable, int], singles: Sequence[Single], pairs: Sequence[Row]) -> Array:
+def table_of(starts: Mapping[Variable, int], singles: Sequence[Single], pairs: Array) -> Array:
     """Readings as a table, m × `FIELDS`, those of one kind one after the other.
 
     Args:
         starts: first row of each block; the table is valid until one is deleted.
         singles: readings of one number.
-        pairs: readings between two nodes.
+        pairs: rows of readings between two nodes, those of one kind one after the other.
     """
+    if not singles:
+        return pairs
     rows = [Row(ONE, starts[s.variable] + s.axis, s.value, s.sigma, *s.noise, s.sigma) for s in singles]
-    rows.extend(sorted(pairs, key=itemgetter(KIND)))
-    return np.fromiter(chain.from_iterable(rows), np.float64, FIELDS * len(rows)).reshape(-1, FIELDS)
+    return np.concatenate([table_from(rows), pairs])
+
+
+def table_from(rows: Sequence[Sequence[float]]) -> Array:
+    """Rows of numbers, at least one, as a table."""
+    width = len(rows[0])
+    return np.fromiter(chain.from_iterable(rows), np.float64, len(rows) * width).reshape(-1, width)
 
 
 @njit(cache=True, error_model="numpy")

@@ -8,8 +8,9 @@ import numpy as np
 from estimator.estimate import Notice, NoticeCode, Vector3
 from estimator.fusion import physics
 from estimator.fusion.ledger import Ledger
+from estimator.fusion.links import Links
 from estimator.fusion.nodes import NodeState
-from estimator.fusion.noise import LearnedNoise, Link
+from estimator.fusion.noise import LearnedNoise
 from estimator.fusion.prior import Prior
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
@@ -56,7 +57,7 @@ class FusionState:
         self.sightings: dict[str, int] = {}
         self.waiting: tuple[AnyReading, ...] = ()
         self.noise: dict[str, LearnedNoise] = {}
-        self.links: dict[str, Link] = {}
+        self.links = Links()
         self.reference_pa: float | None = None
         self.counts: dict[str, int] = {"fused": 0, "not_fused": 0, "outlier": 0}
         self.said: dict[str, None] = {}
@@ -79,7 +80,7 @@ class FusionState:
         """An independent copy, without this tick's notices."""
         twin = copy(self)
         twin.graph, twin.ledger = self.graph.copy(), self.ledger.copy()
-        twin.nodes, twin.links, twin.sightings = dict(self.nodes), dict(self.links), dict(self.sightings)
+        twin.nodes, twin.links, twin.sightings = dict(self.nodes), self.links.copy(), dict(self.sightings)
         twin.noise, twin.uncalibrated = dict(self.noise), dict(self.uncalibrated)
         twin.counts, twin.said, twin.tried = dict(self.counts), dict(self.said), dict(self.tried)
         twin.notices = []

@@ -8,10 +8,11 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import beginnings, free, held, introduce, motion, physics
+from estimator.fusion.pairs import Pairs
 from estimator.fusion.rows import Single, table_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.update import update
-from estimator.fusion.way import Way
+from estimator.fusion.way import offset_of
 from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude, Pressure
 from estimator.measurements.bearing import Bearing
@@ -114,38 +115,40 @@ def flush(state: FusionState) -> None:
 
 
 def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Single]) -> None:
-    """Hold readings against the graph: fixes and heights, then drops, then pairs, all solved together."""
-    until = _newest(readings)
-    _carry(state, until)
+    """Hold readings against the graph: fixes, heights and drops, then pairs, all solved together.
+
+    Args:
+        state: the fusion.
+        readings: in order of epoch.
+        singles: what is held along with them; more is added.
+    """
+    until: dict[str, float] = {}
     between: list[Range | Rssi | Bearing] = []
+    others: list[AnyReading] = []
     for reading in readings:
         if isinstance(reading, PAIRS):
             between.append(reading)
-        elif isinstance(reading, Position):
+            until[reading.a] = until[reading.b] = reading.t
+        else:
+            others.append(reading)
+            until.update(dict.fromkeys(names_of(reading), reading.t))
+    _carry(state, until)
+    for reading in others:
+        if isinstance(reading, Position):
             singles.extend(held.fix(state, reading))
         elif isinstance(reading, (Altitude, Pressure)):
             singles.extend(held.height(state, reading))
         elif isinstance(reading, Drop):
             _drop(state, reading)
-    pairs = held.Pairs(state)
-    for pair in between:
-        _pair(state, pairs, pair)
-    update(state, table_of(state.graph.starts, singles, pairs.rows), pairs.links)
+    pairs = Pairs(state)
+    pairs.take(between)
+    rows = pairs.enter()
+    update(state, table_of(state.graph.starts, singles, rows))
     beginnings.decide(state)
     for name, t in until.items():
         node = state.nodes.get(name)
         if node is not None and node.t < t and node.mode != "retired":
             state.nodes[name] = replace(node, t=t)
-
-
-def _newest(readings: Sequence[AnyReading]) -> dict[str, float]:
-    """The newest epoch at which something is held against each node; readings are in order of epoch."""
-    until: dict[str, float] = {}
-    for reading in readings:
-        t = reading.t
-        for name in names_of(reading):
-            until[name] = t
-    return until
 
 
 def _parts(state: FusionState, readings: Sequence[AnyReading]) -> list[Sequence[AnyReading]]:
@@ -179,17 +182,16 @@ def names_of(reading: AnyReading) -> tuple[str, ...]:
 
 def _carry(state: FusionState, until: Mapping[str, float]) -> None:
     """Move nodes without newer displacements to the newest epoch at which something is held against them."""
-    nodes = state.nodes
-    known = {name: t for name, t in until.items() if name in nodes}
-    free.move_free(state, {name: t for name, t in known.items() if nodes[name].mode == "free"})
-    motion.drift_units(
-        state,
-        {
-            name: t
-            for name, t in known.items()
-            if nodes[name].mode == "unit" and t > nodes[name].pose_t + SAME_EPOCH_S
-        },
-    )
+    drifting: dict[str, float] = {}
+    silent: dict[str, float] = {}
+    for name, t in until.items():
+        node = state.nodes.get(name)
+        if node is not None and node.mode == "free":
+            drifting[name] = t
+        elif node is not None and node.mode == "unit" and t > node.pose_t + SAME_EPOCH_S:
+            silent[name] = t
+    free.move_free(state, drifting)
+    motion.drift_units(state, silent)
 
 
 def _drop(state: FusionState, reading: Drop) -> None:
@@ -204,33 +206,9 @@ def _drop(state: FusionState, reading: Drop) -> None:
         return
     where = state.place(by)
     if by.moving:
-        where = where + np.array(Way(state, by).offset(reading.t))
+        where = where + np.array(offset_of(state, by, reading.t))
     done = introduce.drop(state, reading.node, by, where, reading.t)
     state.count("fused" if done else "not_fused")
-
-
-def _pair(state: FusionState, pairs: held.Pairs, reading: Range | Rssi | Bearing) -> None:
-    a = state.node_of(reading.a, "breadcrumb", reading.t)
-    b = state.node_of(reading.b, "breadcrumb", reading.t)
-    if a.decided and b.decided:
-        if a.mode == "fixed" and b.mode == "fixed":
-            state.count("not_fused")
-        else:
-            pairs.take(a, b, reading)
-        return
-    if "retired" in (a.mode, b.mode):
-        node, other = (a, b) if a.mode == "retired" else (b, a)
-        text = f"{node.node} is retired: what {other.node} measures to it is set aside"
-        state.say("conflict", reading.t, node.node, text, once=f"pair with retired {node.node}")
-        state.count("not_fused")
-        return
-    undecided, other = (b, a) if a.decided else (a, b)
-    moving = other.moving and undecided.role in MOVING_ROLES
-    if not other.decided or isinstance(reading, Bearing) or moving:
-        state.count("not_fused")
-        return
-    held.enter(state, a, b, reading.t, held.told_by(reading))
-    state.sightings[undecided.node] = state.sightings.get(undecided.node, 0) + 1
 
 
 def _retire(state: FusionState, reading: Retire) -> None:

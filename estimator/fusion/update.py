@@ -1,19 +1,14 @@
 """One tick's readings, all at once, into the Kirchhoff state; what they tell of the noise is learned."""
 
-from collections.abc import Mapping
-
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from estimator.fusion.descent import INDEFINITE, SOLVED, Found, descend
-from estimator.fusion.noise import Link
+from estimator.fusion.links import ERROR, KEPT
 from estimator.fusion.rows import LINK, NOMINAL, SIGMA, SOURCE
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
-
-Flags = NDArray[np.bool_]
 
 LEVER_M = 20.0
 """A heading's error at the far end of a room's way."""
@@ -21,14 +16,13 @@ SAME_PLACE = 0.5
 ITERATIONS = 6
 
 
-def update(state: FusionState, table: Array, links: Mapping[str, int]) -> None:
+def update(state: FusionState, table: Array) -> None:
     """Add measurements (operation 1 of paper A, eq. 18) and solve (eq. 4), relinearised where h is curved.
 
     Args:
         state: the fusion; its graph is solved and rests at the new estimate afterwards. Readings that make no
             solvable system are left out.
         table: the readings, see `rows.table_of`.
-        links: number of each link among them.
     """
     graph = state.graph
     if len(table) == 0:
@@ -41,7 +35,7 @@ def update(state: FusionState, table: Array, links: Mapping[str, int]) -> None:
         return
     state.bent_m += bend_m(graph, found.x - graph.reference)
     graph.settle(found.matrix, found.x)
-    _learn(state, table, found, links)
+    _learn(state, table, found)
 
 
 def _descend(graph: Kirchhoff, table: Array) -> Found:
@@ -58,28 +52,18 @@ def bend_m(graph: Kirchhoff, moved: Array) -> float:
     return farthest
 
 
-def _learn(state: FusionState, table: Array, found: Found, links: Mapping[str, int]) -> None:
+def _learn(state: FusionState, table: Array, found: Found) -> None:
     """M-step for the noise of each technology: what good readings are off, and how unsure that is itself."""
     state.count("outlier", int(np.count_nonzero(found.good < 0.5)))
-    if not links:
-        return
-    before = [state.links[key] for key in links]
-    errors = np.array([np.nan if link.error is None else link.error for link in before])
-    alike = np.array([link.kept > SAME_PLACE for link in before], dtype=np.bool_)
     sums = np.zeros((len(state.sources), 5))
-    tally(table, found.residual, found.predicted, found.good, alike, errors, sums)
-    for number, source in enumerate(state.sources):
-        if sums[number, 4] > 0.0:
-            state.noise[source] = state.learned(source).with_errors(*sums[number].tolist())
-    for key, link, error in zip(links, before, errors.tolist(), strict=True):
-        known = None if np.isnan(error) else error
-        state.links[key] = Link(link.t, link.way_m, link.number, link.alike, link.kept, known)
+    tally(table, found.residual, found.predicted, found.good, state.links.table, sums)
+    for source, told in zip(state.sources, sums.tolist(), strict=True):
+        if told[4] > 0.0:
+            state.noise[source] = state.learned(source).with_errors(*told)
 
 
 @njit(cache=True, error_model="numpy")
-def tally(
-    table: Array, residual: Array, predicted: Array, good: Array, alike: Flags, errors: Array, sums: Array
-) -> None:
+def tally(table: Array, residual: Array, predicted: Array, good: Array, links: Array, sums: Array) -> None:
     """Sum up what readings tell of the noise of their technologies.
 
     Args:
@@ -87,8 +71,7 @@ def tally(
         residual: z − h(x) of each, m.
         predicted: variance of each prediction by the state's covariance, m.
         good: probability that each has the good noise, m.
-        alike: whether a link's ends still stand where its reading before was made, one each.
-        errors: newest error on each link in units of the assumed sigma, NaN where there is none; changed.
+        links: the newest reading on each link, see `links`; its error is changed.
         sums: takes count, squares, pairs, products and seen of each technology, as `LearnedNoise.with_errors`
             does.
     """
@@ -104,7 +87,7 @@ def tally(
         if link < 0:
             continue
         error = residual[r] / nominal
-        if alike[link] and not np.isnan(errors[link]):
+        if links[link, KEPT] > SAME_PLACE and not np.isnan(links[link, ERROR]):
             sums[source, 2] += good[r]
-            sums[source, 3] += good[r] * (error * errors[link] - unsure / nominal**2)
-        errors[link] = error if good[r] > SAME_PLACE else np.nan
+            sums[source, 3] += good[r] * (error * links[link, ERROR] - unsure / nominal**2)
+        links[link, ERROR] = error if good[r] > SAME_PLACE else np.nan

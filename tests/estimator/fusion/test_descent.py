@@ -12,6 +12,7 @@ from estimator.fusion.rows import (
     A_E,
     B_E,
     CONSTANT,
+    FIELDS,
     KIND,
     ONE,
     OUTLIERS,
@@ -22,6 +23,7 @@ from estimator.fusion.rows import (
     Row,
     Single,
     columns_of,
+    table_from,
     table_of,
 )
 from estimator.graph.dense import Array, Indices
@@ -67,7 +69,8 @@ def some_table(chance: np.random.Generator, m: int) -> Array:
                 *chance.normal(0.0, 2.0, 6).tolist(),
             )
         )
-    return table_of({Variable("position", "0"): 0, Variable("position", "1"): 3}, singles, pairs)
+    told = table_from(sorted(pairs)) if pairs else np.empty((0, FIELDS))
+    return table_of({Variable("position", "0"): 0, Variable("position", "1"): 3}, singles, told)
 
 
 def some_state(chance: np.random.Generator) -> tuple[Array, Array, Array]:

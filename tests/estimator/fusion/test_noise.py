@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from estimator.fusion.noise import LearnedNoise, Link, link_sigma
+from estimator.fusion.noise import LearnedNoise, link_sigma
 
 
 def test_the_learned_factor_follows_the_errors_that_come_in() -> None:
@@ -42,11 +42,3 @@ def test_alike_readings_are_together_worth_no_more_than_their_common_error_allow
 def test_independent_readings_keep_their_full_worth() -> None:
     noise = LearnedNoise(count=100.0, squares=100.0, pairs=100.0, products=0.0)
     assert link_sigma(noise.factor, noise.shared, 0.3, 50.0) == pytest.approx(0.3)
-
-
-def test_a_link_forgets_its_error_once_an_end_has_walked_a_room_on() -> None:
-    link = Link(0.0, 0.0)
-    for second in range(1, 10):
-        link = link.next(float(second), 0.0)
-    assert link.alike == pytest.approx(10.0, rel=0.1)
-    assert link.next(10.0, 30.0).alike == pytest.approx(1.0, abs=0.01)

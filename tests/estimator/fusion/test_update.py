@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from estimator.fusion.links import ERROR, KEPT
 from estimator.fusion.rows import FIELDS, LINK, NOMINAL, SIGMA, SOURCE
 from estimator.fusion.update import tally
 
@@ -17,8 +18,9 @@ def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_
         np.full(4, 0.04),
         np.array([0.9, 0.8, 0.2, 1.0]),
     )
-    errors, sums = np.array([1.5, np.nan]), np.zeros((3, 5))
-    tally(table, residual, predicted, good, np.array([True, True]), errors, sums)
+    links, sums = np.zeros((2, 5)), np.zeros((3, 5))
+    links[:, KEPT], links[:, ERROR] = 1.0, [1.5, np.nan]
+    tally(table, residual, predicted, good, links, sums)
     unsure = 0.04 * 0.16 / 0.2
     first, second = 0.3 / 0.5, -0.2 / 0.5
     squares = 0.9 * (0.3**2 + unsure) / 0.25 + 0.8 * (0.2**2 + unsure) / 0.25
@@ -26,5 +28,5 @@ def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_
     assert sums[1] == pytest.approx([1.7, squares, 1.7, products, 2.0])
     assert sums[0] == pytest.approx([0.2, 0.2 * (1.0 + unsure) / 0.25, 0.0, 0.0, 1.0])
     assert (sums[2] == 0.0).all()
-    assert errors[0] == pytest.approx(second)
-    assert np.isnan(errors[1])
+    assert links[0, ERROR] == pytest.approx(second)
+    assert np.isnan(links[1, ERROR])

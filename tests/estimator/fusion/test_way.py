@@ -12,7 +12,6 @@ from estimator.fusion.way import between
 def test_it_is_what_interpolation_gives(seed: int, m: int) -> None:
     chance = np.random.default_rng(seed)
     marks = np.column_stack([np.sort(chance.uniform(0.0, 9.0, m)), chance.normal(0.0, 5.0, (m, 3))])
-    told = tuple((t, e, n, u) for t, e, n, u in marks.tolist())
     for t in (-1.0, 10.0, *marks[:, 0].tolist(), *chance.uniform(0.0, 9.0, 5).tolist()):
         expected = [float(np.interp(t, marks[:, 0], marks[:, axis])) for axis in (1, 2, 3)]
-        assert between(told, t) == pytest.approx(expected)
+        assert between(marks, t) == pytest.approx(expected)

@@ -1,0 +1,82 @@
+"""What readings that follow each other on one link have in common."""
+
+import math
+from typing import NamedTuple, Self
+
+import numpy as np
+from numba import njit
+
+from estimator.fusion import physics
+from estimator.graph.dense import Array
+
+T, WAY, ALIKE, KEPT, ERROR = range(5)
+"""Columns of a link's newest reading: its epoch; how far both ends had walked by then (m); how many readings,
+itself included, share its error; how much of the error before it still held, 0 to 1; its error in units of
+the assumed sigma, NaN before it is fused."""
+NEW = (-math.inf, 0.0, 0.0, 0.0, math.nan)
+"""Nothing is left of a reading that was made an eternity ago."""
+NONE: Array = np.zeros((0, 5))
+SPARE = 16
+
+
+class Link(NamedTuple):
+    """What a link is told by.
+
+    Attributes:
+        source: the technology that its noise is learned for.
+        a: the end whose name comes first.
+        b: the other end.
+    """
+
+    source: str
+    a: str
+    b: str
+
+
+class Links:
+    """The newest reading on each link, as a table that grows by doubling.
+
+    Args:
+        numbers: the row of each link.
+        table: their newest readings, links × 5 or more; both are taken over.
+
+    Attributes:
+        numbers: the row of each link, which is its number in the ledger as well.
+    """
+
+    def __init__(self, numbers: dict[tuple[str, str, str], int] | None = None, table: Array = NONE) -> None:
+        self.numbers = {} if numbers is None else numbers
+        self._table = table
+
+    def copy(self) -> Self:
+        """An independent copy."""
+        return type(self)(dict(self.numbers), self._table.copy())
+
+    @property
+    def table(self) -> Array:
+        """The newest readings, links × 5: a view, changed in place."""
+        return self._table[: len(self.numbers)]
+
+    def number(self, source: str, a: str, b: str) -> int:
+        """The number of the link of a technology between two nodes, in either direction."""
+        link = (source, a, b) if a < b else (source, b, a)
+        found = self.numbers.get(link)
+        if found is None:
+            found = self.numbers[link] = len(self.numbers)
+            if found == len(self._table):
+                self._table = np.concatenate([self._table, np.tile(NEW, (found + SPARE, 1))])
+        return found
+
+
+@njit(cache=True, error_model="numpy")
+def follow(link: Array, t: float, way_m: float) -> None:
+    """Go on to the next reading on a link.
+
+    Args:
+        link: its row, 5, changed.
+        t: epoch of the reading (s).
+        way_m: how far both ends have walked by then (m).
+    """
+    moved, waited = abs(way_m - link[WAY]), abs(t - link[T])
+    kept = math.exp(-moved / physics.SHARED_M - waited / physics.SHARED_S)
+    link[T], link[WAY], link[ALIKE], link[KEPT] = t, way_m, 1.0 + kept * link[ALIKE], kept
