@@ -1,7 +1,6 @@
 """The canonical order of readings: the same set gives the same estimates, in whatever order it arrives."""
 
 import math
-from typing import NamedTuple
 
 import msgspec
 
@@ -12,23 +11,9 @@ from estimator.measurements.node import Node
 _encode = msgspec.msgpack.Encoder().encode
 
 
-class Entry(NamedTuple):
-    """A reading with its place in the order: epoch, introductions first, then its own bytes."""
-
-    t: float
-    rank: int
-    content: bytes
-    reading: AnyReading
-
-
-def entry(reading: AnyReading) -> Entry:
-    """The reading with its sort key; two entries with equal keys are the same reading."""
-    return Entry(reading.t, 0 if isinstance(reading, Node) else 1, _encode(reading), reading)
-
-
-def key(item: Entry) -> tuple[float, int, bytes]:
-    """What entries are sorted by."""
-    return item[:3]
+def place_of(reading: AnyReading) -> tuple[float, int, bytes]:
+    """A reading's place in the order: epoch, introductions first, then its own bytes."""
+    return reading.t, 0 if isinstance(reading, Node) else 1, _encode(reading)
 
 
 def tick_of(t: float) -> int:

@@ -54,7 +54,10 @@ def sensed(
 ) -> list[AnyReading]:
     """The introductions, and what both walkers measure; `off_s`: when a breadcrumb dies (s)."""
     radios = radios_of(tracks, crumbs, off_s)
-    readings: list[AnyReading] = [introduce_base(), *(introduce(node, tracks[node], rng) for node in FOLLOWS_S)]
+    readings: list[AnyReading] = [
+        introduce_base(),
+        *(introduce(node, tracks[node], rng) for node in FOLLOWS_S),
+    ]
     readings += introduce_dropped(crumbs)
     for node in FOLLOWS_S:
         readings += measured(node, radios, END_S, rng, Kit(altitude_sigma_m=None))

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from estimator.estimate import TrackPoint
 from estimator.evidence import Advice, Evidence
 from estimator.fusion.ledger import Ledger
-from estimator.fusion.order import entry, key
+from estimator.fusion.order import place_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import flush, fold_tick, keep_poses, names_of
 from estimator.measurements import AnyReading
@@ -83,7 +83,7 @@ class BatchSmoother:
 
 def in_order(readings: Sequence[AnyReading]) -> list[AnyReading]:
     """The readings in canonical order, without those whose epoch must be wrong."""
-    ordered = [e.reading for e in sorted((entry(r) for r in readings), key=key)]
+    ordered = sorted(readings, key=place_of)
     middle = ordered[len(ordered) // 2].t if ordered else 0.0
     return [r for r in ordered if abs(r.t - middle) < LONGEST_S]
 

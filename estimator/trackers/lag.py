@@ -12,7 +12,7 @@ from typing import Self
 import msgspec
 
 from estimator.estimate import Notice
-from estimator.fusion.order import Entry, end_of, entry, key, tick_of
+from estimator.fusion.order import end_of, place_of, tick_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import fold_tick, names_of
 from estimator.measurements import AnyReading
@@ -63,7 +63,7 @@ class Lag:
         self.too_late = 0
         self.received = 0
         self._ticks: list[int] = []
-        self._entries: dict[int, list[Entry]] = {}
+        self._entries: dict[int, list[AnyReading]] = {}
         self._checkpoints: list[tuple[int, FusionState]] = [(-1, state)]
         self._folded = -1
         self._notices: dict[int, list[Notice]] = {}
@@ -76,7 +76,7 @@ class Lag:
         lag = cls(lag_s, states[0])
         lag.newest_t, lag.too_late, lag.received = record.newest_t, record.too_late, record.received
         lag._ticks = [tick for tick, _ in record.readings]
-        lag._entries = {tick: [entry(r) for r in readings] for tick, readings in record.readings}
+        lag._entries = {tick: list(readings) for tick, readings in record.readings}
         lag._checkpoints = list(zip(record.checkpoints, states, strict=True))
         lag._folded = record.checkpoints[-1]
         lag._notices, lag._given, lag._loose = record.notices, record.given, record.loose
@@ -95,7 +95,7 @@ class Lag:
             self.newest_t,
             self.too_late,
             self.received,
-            [(tick, [e.reading for e in self._entries[tick]]) for tick in self._ticks],
+            [(tick, list(self._entries[tick])) for tick in self._ticks],
             [tick for tick, _ in checkpoints],
             self._notices,
             self._given,
@@ -117,7 +117,7 @@ class Lag:
             if tick not in self._entries:
                 self._entries[tick] = []
                 insort(self._ticks, tick)
-            self._entries[tick].append(entry(reading))
+            self._entries[tick].append(reading)
             if tick <= self._folded:
                 self._roll_back(tick)
         for node, missed in late.items():
@@ -135,7 +135,7 @@ class Lag:
         for tick in self._ticks[first:]:
             before = self._checkpoints[-1][1]
             after = before.copy()
-            in_order = [e.reading for e in sorted(self._entries[tick], key=key)]
+            in_order = sorted(self._entries[tick], key=place_of)
             fold_tick(after, end_of(tick), in_order)
             keep_up(after, end_of(tick))
             self._notices[tick] = list(after.notices)
