@@ -6,8 +6,8 @@ import numpy as np
 from numba import njit
 
 from estimator.graph.dense import Array
-from estimator.measurements.range import predict_range
-from estimator.measurements.rssi import predict_rssi
+from estimator.measurements.range import range_at
+from estimator.measurements.rssi import rssi_at
 
 ANGLES = 12
 STEPS = 25
@@ -76,12 +76,13 @@ def find_modes(sought: Sought) -> list[Mode]:
     state, normal, cost = _descend(ranged, *told, _starts(sought), prior, mean)
     modes: list[Mode] = []
     for i in np.argsort(cost, kind="stable"):
-        covariance = np.linalg.inv(normal[i])[:3, :3]
-        spread = float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1]))
-        mode = Mode(state[i, :3].copy(), float(cost[i]), spread, float(np.sqrt(covariance[2, 2])))
-        apart = [float(np.hypot(*(mode.position_m - m.position_m)[:2])) for m in modes]
+        place = state[i, :3].copy()
+        # Most starts lead to the same few places: only of those is it asked how sure they are.
+        apart = [float(np.hypot(*(place - m.position_m)[:2])) for m in modes]
         if all(d > max(APART_M, 3.0 * m.sigma_m) for d, m in zip(apart, modes, strict=True)):
-            modes.append(mode)
+            covariance = np.linalg.inv(normal[i])[:3, :3]
+            spread = float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1]))
+            modes.append(Mode(place, float(cost[i]), spread, float(np.sqrt(covariance[2, 2]))))
     return modes
 
 
@@ -154,14 +155,6 @@ def _linearise(
     ranged: bool, points: Array, value: Array, sigma: Array, state: Array, prior: Array, mean: Array
 ) -> tuple[Array, Array, float]:
     """Normal matrix 5 × 5, gradient 5 and cost at a state, 5."""
-    m = len(value)
-    here, one = np.empty((m, 3)), np.ones(m)
-    for axis in range(3):
-        here[:, axis] = state[axis]
-    if ranged:
-        got = predict_range(points, here, one * state[3], one * state[4])
-    else:
-        got = predict_rssi(points, here, one * state[3], one * state[4])
     off = mean - state
     off[:2] = 0.0
     gradient = prior @ off
@@ -169,14 +162,15 @@ def _linearise(
     normal, row = prior.copy(), np.empty(5)
     normal[0, 0] += LEAST_INFORMATION
     normal[1, 1] += LEAST_INFORMATION
-    for i in range(m):
-        residual = (value[i] - got.predicted[i]) / sigma[i]
+    for i in range(len(value)):
+        e, n, u = points[i, 0] - state[0], points[i, 1] - state[1], points[i, 2] - state[2]
+        squared = e * e + n * n + u * u
+        got = range_at(squared, state[3], state[4]) if ranged else rssi_at(squared, state[3], state[4])
+        residual = (value[i] - got.predicted) / sigma[i]
         loss = 1.0 + (residual / CAUCHY) ** 2
         cost += 0.5 * CAUCHY**2 * np.log(loss)
-        for r in range(3):
-            row[r] = got.by_b[i, r] / sigma[i]
-        for r in range(2):
-            row[3 + r] = got.by_extra[i, r] / sigma[i]
+        row[0], row[1], row[2] = -e * got.by_a / sigma[i], -n * got.by_a / sigma[i], -u * got.by_a / sigma[i]
+        row[3], row[4] = got.by_first / sigma[i], got.by_second / sigma[i]
         for r in range(5):
             pulled = row[r] / loss
             gradient[r] += pulled * residual
