@@ -20,11 +20,12 @@ from estimator.measurements.displacement import move
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.bent import add_bends
-from estimator.smoothing.ends import Nodes, Table, lay_out, place_ends, stand
+from estimator.smoothing.ends import Nodes, Table, choose, place_ends, stand
 from estimator.smoothing.learn import noise_scores
-from estimator.smoothing.linear import ANY, Readings, jacobians, residuals
+from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals
 from estimator.smoothing.slips import gains, unsure
-from estimator.smoothing.walks import STATES, inverses, led_by, misfit, reckon, sums_between, unit_motion
+from estimator.smoothing.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
+from estimator.smoothing.ways import Laid, Way
 
 
 def warm_up() -> None:
@@ -60,7 +61,8 @@ def _warm_chain() -> None:
     noise_scores(motion, doubt)
     gains(motion, doubt)
     inverses(motion.noise)
-    reckon(np.zeros((k, 2 * n))[:, :n], between, one, 0)
+    for wide_states in (states, np.zeros((k, 2 * n))[:, :n]):
+        reckon(wide_states, between, one, 0)
     led_by(states, np.zeros((k, 12))[:, :3], np.zeros((k, 12))[:, 3:6], np.ones(k))
     add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)
     eliminate(0, k, diagonal, link, wide)
@@ -71,12 +73,16 @@ def _warm_chain() -> None:
     end = Table(slab, np.zeros((1, STATES), dtype=np.int64), place, place, place, one)
     place_ends(end, x)
     nodes = Nodes(slab, slab, slab, place)
-    stand(nodes, slab, one, np.zeros(1, dtype=np.bool_), rest, place, np.zeros((1, 2), dtype=np.int64))
-    lay_out(slab, sums_between(0.0, one, between, one, one), place, place, place)
-    pair = np.zeros((1, 2), dtype=np.int64)
+    pair, no = np.zeros((1, 2), dtype=np.int64), np.zeros(1, dtype=np.bool_)
+    stood = stand(nodes, slab, one, no, rest, place, pair)
+    choose(np.zeros((1, 10)), stood, stood, pair, no)
+    way = Way(0.0, between, (1.0, 1.0))
+    way.between(one, one)
+    way.lay_out(0, slab, one, one, Laid(place, place, place))
     readings = Readings(slab, one, one, pair, end, end, slab, one, end, end, end)
     residuals(readings, x)
-    jacobians(readings, x)
+    add_unsure(jacobians(readings, x), place, place, place, place, np.ones(5))
+    apart(readings, x)
     add_bends(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
 
 

@@ -1,15 +1,19 @@
 """Where the ends of readings are, for any estimate: keyframes with what was walked since, or what stands."""
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from estimator.graph.dense import Array, Indices
+from estimator.fusion.ledger import RSSI
+from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.walks import STATES, lead
+from estimator.smoothing.ways import Laid
+
+Row = TypeVar("Row", bound=np.generic)
 
 FIXED, STANDING, UNIT, FREE, UNPLACED = range(5)
 
@@ -192,21 +196,52 @@ def stand(
     return Stood(kind, slab, columns, flat, fixed, since, usable)
 
 
+class Chosen(NamedTuple):
+    """Which of m pairs have their places in a window.
+
+    Attributes:
+        chosen: m.
+        extra: columns of its technology, m × 2; −1: it has none.
+        slab: keyframe, m.
+        inside: it is a range or a power, and no end is outside the building, m.
+    """
+
+    chosen: NDArray[np.bool_]
+    extra: Integers
+    slab: Integers
+    inside: NDArray[np.bool_]
+
+
 @njit(cache=True)
-def lay_out(mine: Indices, found: Array, delta_m: Array, moment: Array, unsure_m2: Array) -> None:
-    """Put what some ends have walked since their keyframes where it belongs.
+def choose(pairs: Array, a: Stood, b: Stood, technology: Integers, outside: NDArray[np.bool_]) -> Chosen:
+    """Choose the pairs whose ends and technology have places in a window.
 
     Args:
-        mine: which of m ends.
-        found: sums of each of those; see `walks.Way.between`.
-        delta_m: see `Table`, m × 3, changed.
-        moment: see `Table`, m × 3, changed.
-        unsure_m2: see `Ends`, m × 3, changed.
+        pairs: rows of the ledger, m × 10.
+        a: their first ends.
+        b: their second ends.
+        technology: first column of each, kinds × sources; −1: there is none.
+        outside: whether each node of the ledger is outside the building.
     """
-    for row, at in enumerate(mine):
-        for c in range(3):
-            delta_m[at, c], moment[at, c] = found[row, c], found[row, 3 + c]
-            unsure_m2[at, c] = abs(found[row, 6 if c < 2 else 7])
+    m = len(pairs)
+    chosen, inside = np.empty(m, dtype=np.bool_), np.empty(m, dtype=np.bool_)
+    extra, slab = np.full((m, 2), -1), np.empty(m, dtype=np.int64)
+    for i in range(m):
+        kind, source, first, second = int(pairs[i, 1]), int(pairs[i, 6]), int(pairs[i, 2]), int(pairs[i, 3])
+        if kind <= RSSI and source >= 0 and technology[kind, source] >= 0:
+            extra[i, 0], extra[i, 1] = technology[kind, source], technology[kind, source] + 1
+        a_moves, b_moves = a.kind[i] in (UNIT, FREE), b.kind[i] in (UNIT, FREE)
+        chosen[i] = a.usable[i] and b.usable[i] and (extra[i, 0] >= 0 or kind > RSSI)
+        if (a_moves and b_moves and a.slab[i] != b.slab[i]) or (a.columns[i, 0] < 0 and b.columns[i, 0] < 0):
+            chosen[i] = False
+        slab[i] = a.slab[i] if a_moves else b.slab[i]
+        inside[i] = kind <= RSSI and not outside[first] and not outside[second]
+    return Chosen(chosen, extra, slab, inside)
+
+
+def kept(rows: NDArray[Row], chosen: NDArray[np.bool_]) -> NDArray[Row]:
+    """Some of m rows; the rows themselves where that is all of them."""
+    return rows if chosen.all() else rows[chosen]
 
 
 class Ends:
@@ -216,6 +251,7 @@ class Ends:
         slab: keyframe of each, m; 0 where it stands.
         columns: its six columns, m × 6: of the keyframe, or of the border counted after it; −1: none.
         usable: it has a place in the window at its epoch.
+        stood: all of that, of the ends before any were left out.
         moving: it is of a node that moves, m.
         unsure_m2: variances that a unit's own noise adds since its keyframe, m × 3 (m²).
         table: what its place follows from.
@@ -233,14 +269,12 @@ class Ends:
         lives = np.array([(w.first, w.last) for w in layout.walks], dtype=np.int64).reshape(-1, 2)
         known = nodes_of(layout) if nodes is None else nodes
         stood = stand(known, numbers, t, nearest, layout.grid, layout.times, lives)
-        self.slab, self.columns, self.usable = stood.slab, stood.columns, stood.usable
-        self.unsure_m2: Array = np.zeros((m, 3))
-        delta_m, moment = np.zeros((m, 3)), np.zeros((m, 3))
-        for walk in layout.walks:
-            mine = np.flatnonzero(numbers == walk.number)
-            if walk.way is not None and len(mine):
-                found = walk.way.between(stood.since_t[mine], t[mine])
-                lay_out(mine, found, delta_m, moment, self.unsure_m2)
+        self.slab, self.columns, self.usable, self.stood = stood.slab, stood.columns, stood.usable, stood
+        laid = Laid(np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)))
+        for walk in layout.walks if m else ():
+            if walk.way is not None:
+                walk.way.lay_out(walk.number, numbers, stood.since_t, t, laid)
+        delta_m, moment, self.unsure_m2 = laid
         self.moving = (stood.kind == UNIT) | (stood.kind == FREE)
         self.table = Table(stood.kind, stood.flat, stood.fixed_m, delta_m, moment, t - stood.since_t)
 

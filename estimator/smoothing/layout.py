@@ -9,7 +9,8 @@ from estimator.fusion.prior import Key, Prior
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.variable import Variable
-from estimator.smoothing.walks import STATES, Way
+from estimator.smoothing.walks import STATES
+from estimator.smoothing.ways import Way
 
 
 class Walk(NamedTuple):

@@ -13,7 +13,7 @@ from numba import njit
 from estimator.fusion.calibration import narrow_sigma, scale_sigma, uncalibrated
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
-from estimator.smoothing.slips import admit, find_slips, unsure
+from estimator.smoothing.slips import Doubts, admit, find_slips, unsure_of
 from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.walks import Motion
 
@@ -41,9 +41,10 @@ def learn(state: FusionState, problem: Problem, solved: Solved, step: float = ST
     """
     solved.chain.reduce()
     found, ahead, border = solved.chain.covariances()
-    learn_walks(state, problem, solved, found, ahead, step)
+    doubts = unsure_of(problem, solved, found, ahead)
+    learn_walks(state, problem, solved, doubts, step)
     if solved.rests:
-        slips = find_slips(problem, solved, found, ahead)
+        slips = find_slips(problem, solved, doubts)
         admit(state, slips)
         state.due = state.due or bool(slips)
     calibrate(state, problem, solved.x, border)
@@ -51,7 +52,7 @@ def learn(state: FusionState, problem: Problem, solved: Solved, step: float = ST
 
 
 def learn_walks(
-    state: FusionState, problem: Problem, solved: Solved, found: Array, ahead: Array, most: float = STEP
+    state: FusionState, problem: Problem, solved: Solved, doubts: Doubts, most: float = STEP
 ) -> None:
     """Move each unit's noise factors along their score.
 
@@ -59,16 +60,12 @@ def learn_walks(
         state: its nodes take the factors.
         problem: of the window.
         solved: its solution.
-        found: covariance of each walk at each keyframe, k × walks × 6 × 6.
-        ahead: of each with itself at the next keyframe, (k − 1) × walks × 6 × 6.
+        doubts: see `slips.unsure_of`.
         most: farthest that the logarithm of a variance moves.
     """
-    for i, walk in enumerate(problem.layout.walks):
-        motion = solved.motions[i]
-        if walk.way is None or not len(motion.noise):
-            continue
-        scores = noise_scores(motion, unsure(motion, found, ahead, i, walk.first)).tolist()
-        node = state.nodes[walk.node.node]
+    for i, doubt in doubts.items():
+        scores = noise_scores(solved.motions[i], doubt).tolist()
+        node = state.nodes[problem.layout.walks[i].node.node]
         factors = []
         for factor, (score, sure) in zip(node.walk_factors, scores, strict=True):
             off = np.log(factor)

@@ -162,3 +162,42 @@ def jacobians(readings: Readings, x: Array) -> Array:
             if readings.crumb.kind[i] != FIXED:
                 row[6 + c], row[9:12] = 1.0, crumb.turned[i, c]
     return found
+
+
+@njit(cache=True)
+def apart(readings: Readings, x: Array) -> Array:
+    """From the second end of each pair to the first one at an estimate x, flat, m × 3 (m)."""
+    m = len(readings.kind)
+    found, a, b, turned = np.empty((m, 3)), np.empty(3), np.empty(3), np.zeros((3, 3))
+    ends_a, ends_b = readings.a, readings.b
+    for i in range(m):
+        place_end(ends_a, i, x, a, turned)
+        place_end(ends_b, i, x, b, turned)
+        for c in range(3):
+            found[i, c] = a[c] - b[c]
+    return found
+
+
+@njit(cache=True)
+def add_unsure(jacobian: Array, a: Array, b: Array, on: Array, by: Array, sigma: Array) -> None:
+    """Add to the noise of all rows what their units' own ways since their keyframes are unsure by.
+
+    Args:
+        jacobian: of the rows, m × 14.
+        a: variances of the first ends of the pairs, × 3 (m²); see `ends.Ends`.
+        b: those of the second ends.
+        on: those of the ends of the singles.
+        by: those of who dropped.
+        sigma: standard deviations, m, changed.
+    """
+    pairs, singles = len(a), len(on)
+    for i in range(len(sigma)):
+        variance = sigma[i] ** 2
+        for c in range(3):
+            if i < pairs:
+                variance += jacobian[i, c] ** 2 * a[i, c] + jacobian[i, 6 + c] ** 2 * b[i, c]
+            elif i < pairs + singles:
+                variance += jacobian[i, c] ** 2 * on[i - pairs, c]
+            else:
+                variance += jacobian[i, c] ** 2 * by[(i - pairs - singles) // 3, c]
+        sigma[i] = np.sqrt(variance)

@@ -11,9 +11,9 @@ from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import wrap
 from estimator.smoothing.encounters import candidates, near_dbm
-from estimator.smoothing.ends import UNIT, Ends, nodes_of, place_ends
+from estimator.smoothing.ends import UNIT, Ends, choose, kept, nodes_of, place_ends
 from estimator.smoothing.layout import Layout
-from estimator.smoothing.linear import ANY, Readings, jacobians, residuals
+from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals
 
 DROP = len(physics.NOISES) - 1
 NOISES = np.array(physics.NOISES)
@@ -96,30 +96,23 @@ class Rows:
 
     def _pairs(self, layout: Layout, since_t: float) -> None:
         pairs = layout.state.ledger.table("pairs")
-        pairs = pairs[pairs[:, 0] >= since_t]
+        pairs = kept(pairs, pairs[:, 0] >= since_t)
         numbers = pairs[:, 2:4].astype(np.int64)
         unitless = self._nodes.kind[numbers] != UNIT
         nearest = unitless[:, 0] & unitless[:, 1]
         a, b = (Ends(layout, numbers[:, i], pairs[:, 0], nearest, self._nodes) for i in (0, 1))
-        extra = np.full((len(pairs), 2), -1, dtype=np.int64)
+        technology = np.full((BEARING, len(layout.state.sources)), -1, dtype=np.int64)
         for (kind, source), start in layout.technologies.items():
-            mine = (pairs[:, 1] == (RANGE if kind == "range" else RSSI)) & (pairs[:, 6] == source)
-            extra[mine] = layout.width + start + np.arange(2)
-        known = (extra[:, 0] >= 0) | (pairs[:, 1] >= BEARING)
-        same = (a.slab == b.slab) | ~a.moving | ~b.moving
-        held = (a.columns[:, 0] >= 0) | (b.columns[:, 0] >= 0)
-        chosen = a.usable & b.usable & known & same & held
-        a.take(chosen)
-        b.take(chosen)
-        self.pairs: Array = pairs[chosen]
-        self._a, self._b, self._extra = a, b, extra[chosen]
-        self._slab = np.where(a.moving, a.slab, b.slab)
+            technology[RANGE if kind == "range" else RSSI, source] = layout.width + start
         nodes = layout.state.nodes
-        outside = np.array(
-            [nodes[name].role in physics.OUTSIDE_ROLES for name in layout.state.owners], dtype=bool
-        )
-        off = outside[self.pairs[:, 2:4].astype(np.int64)]
-        self._inside = (self.pairs[:, 1] <= RSSI) & ~(off[:, 0] | off[:, 1])
+        outside = [nodes[name].role in physics.OUTSIDE_ROLES for name in layout.state.owners]
+        found = choose(pairs, a.stood, b.stood, technology, np.array(outside, dtype=bool))
+        a.take(found.chosen)
+        b.take(found.chosen)
+        self._a, self._b = a, b
+        self.pairs: Array = kept(pairs, found.chosen)
+        self._extra, self._slab = kept(found.extra, found.chosen), kept(found.slab, found.chosen)
+        self._inside = kept(found.inside, found.chosen)
 
     def _singles(self, layout: Layout, since_t: float) -> None:
         singles = layout.state.ledger.table("singles")
@@ -176,34 +169,27 @@ class Rows:
             jacobian: of the rows, m × 14, by which the noise of a place becomes one of the reading.
         """
         self.sigma = self._told.copy()
-        m, n = len(self.pairs), len(self.singles)
-        a, b = self.places(x)
-        self._through_floors(a, b)
-        self._sharpen(x, a, b)
-        for columns, ends in ((slice(0, 3), self._a), (slice(6, 9), self._b)):
-            self._add(slice(0, m), jacobian[:m, columns], ends.unsure_m2)
-        self._add(slice(m, m + n), jacobian[m : m + n, :3], self._on.unsure_m2)
-        drops = np.repeat(self._by.unsure_m2, 3, axis=0)
-        self._add(slice(m + n, len(self.sigma)), jacobian[m + n :, :3], drops)
+        way = apart(self._readings, x)
+        self._through_floors(way)
+        self._sharpen(x, way)
+        a, b, on, by = (ends.unsure_m2 for ends in (self._a, self._b, self._on, self._by))
+        add_unsure(jacobian, a, b, on, by, self.sigma)
 
-    def _through_floors(self, a: Array, b: Array) -> None:
+    def _through_floors(self, way: Array) -> None:
         m = len(self.pairs)
-        through = self._inside & (np.abs(a[:, 2] - b[:, 2]) > physics.FLOOR_M)
+        through = self._inside & (np.abs(way[:, 2]) > physics.FLOOR_M)
         if through.any():
             lost = np.where(self.pairs[:, 1] == RANGE, *physics.FLOOR_SIGMA)
             self.sigma[:m] = np.where(through, np.hypot(self.sigma[:m], lost), self.sigma[:m])
 
-    def _sharpen(self, x: Array, a: Array, b: Array) -> None:
+    def _sharpen(self, x: Array, way: Array) -> None:
         at = np.flatnonzero(self._strongest)
         if not len(at):
             return
         extra = x[self._readings.extra[at]]
         near = near_dbm(extra[:, 0] + self.pairs[at, 7], extra[:, 1])
-        close = np.linalg.norm(a[at] - b[at], axis=1) <= physics.ENCOUNTER_M
+        close = np.linalg.norm(way[at], axis=1) <= physics.ENCOUNTER_M
         self.sigma[at[close & (self.pairs[at, 4] >= near)]] = physics.NEAR_SIGMA_DB
-
-    def _add(self, rows: slice, by_place: Array, unsure_m2: Array) -> None:
-        self.sigma[rows] = np.sqrt(self.sigma[rows] ** 2 + (by_place**2 * unsure_m2).sum(axis=1))
 
     def places(self, x: Array) -> tuple[Array, Array]:
         """Where both ends of each pair are at an estimate, m × 3 each (m)."""

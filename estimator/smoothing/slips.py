@@ -16,6 +16,8 @@ from estimator.graph.dense import Array
 from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.walks import Motion
 
+Doubts = dict[int, Array]
+
 SLIP_M = physics.SLIP_M
 APART_S = 30.0
 """Steps as near as this to a slip stand out because of it."""
@@ -77,6 +79,22 @@ def unsure(motion: Motion, found: Array, ahead: Array, walk: int, first: int) ->
     return covariance
 
 
+def unsure_of(problem: Problem, solved: Solved, found: Array, ahead: Array) -> Doubts:
+    """V of the steps of each walk that has a unit, by the walk's place in the window.
+
+    Args:
+        problem: of a window.
+        solved: its solution.
+        found: covariance of each walk at each keyframe, k × walks × 6 × 6.
+        ahead: of each with itself at the next keyframe, (k − 1) × walks × 6 × 6.
+    """
+    return {
+        i: unsure(solved.motions[i], found, ahead, i, walk.first)
+        for i, walk in enumerate(problem.layout.walks)
+        if walk.way is not None and len(solved.motions[i].noise)
+    }
+
+
 @njit(cache=True)
 def gains(motion: Motion, unsure_of: Array) -> tuple[Array, Array]:
     """How much likelier the readings are if a step has slipped, and by how much it then has.
@@ -118,21 +136,18 @@ def gains(motion: Motion, unsure_of: Array) -> tuple[Array, Array]:
     return gain, off
 
 
-def find_slips(problem: Problem, solved: Solved, found: Array, ahead: Array) -> list[Slip]:
+def find_slips(problem: Problem, solved: Solved, doubts: Doubts) -> list[Slip]:
     """The steps of all units that are likelier to have slipped than not.
 
     Args:
         problem: of a window.
         solved: its solution.
-        found: covariance of each walk at each keyframe, k × walks × 6 × 6.
-        ahead: of each with itself at the next keyframe, (k − 1) × walks × 6 × 6.
+        doubts: see `unsure_of`.
     """
     slips = []
-    for i, walk in enumerate(problem.layout.walks):
-        motion = solved.motions[i]
-        if walk.way is None or not len(motion.noise):
-            continue
-        gain, off = gains(motion, unsure(motion, found, ahead, i, walk.first))
+    for i, doubt in doubts.items():
+        walk = problem.layout.walks[i]
+        gain, off = gains(solved.motions[i], doubt)
         times = problem.layout.times[walk.first : walk.last + 1, i]
         middle = 0.5 * (times[:-1] + times[1:])
         while len(gain) and gain.max() > physics.SLIP_RARE:

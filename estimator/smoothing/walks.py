@@ -5,110 +5,14 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion import physics
 from estimator.fusion.free import free_motion
 from estimator.graph.dense import Array
 from estimator.graph.kernels import half_inverse
 
-LONGEST_S = 600.0
-"""Noise stops growing with the time between two reports there: nobody is followed over longer silences."""
 FLOOR = np.array([1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12])
 VARIANCES = np.array([6, 6, 7, 8, 9, 10])
 """Which sums of a way are the variances of which states."""
 STATES = 6
-LONG_STEP_S = 4.0
-"""Nobody's way over a longer time is a straight line."""
-
-
-class Way:
-    """Displacements of one PDR unit summed up along its time, with the variances that they add.
-
-    Args:
-        begin_t: epoch at which it begins (s).
-        steps: its rows of the ledger's `steps`, in order of epoch.
-        factors: learned variances over the assumed ones: of position, of heading.
-    """
-
-    def __init__(self, begin_t: float, steps: Array, factors: tuple[float, float]) -> None:
-        t, start, delta = steps[:, 0], steps[:, 2], steps[:, 3:6]
-        assumed = steps[:, 11] == 0.0
-        across = steps[:, 6] * np.where(assumed, factors[0], 1.0)
-        upwards = steps[:, 7] * np.where(assumed, factors[0], 1.0)
-        middle = 0.5 * (start + t) - begin_t
-        parts = [
-            delta,
-            delta * middle[:, None],
-            across[:, None],
-            upwards[:, None],
-            steps[:, 8:9] * factors[1],
-            steps[:, 9:11],
-            np.linalg.norm(delta[:, :2], axis=1)[:, None],
-        ]
-        each = np.concatenate(parts, axis=1)
-        self._begin = begin_t
-        self._marks = np.concatenate([[begin_t], t])
-        self._sums = np.concatenate([np.zeros((1, each.shape[1])), np.cumsum(each, axis=0)])
-
-    def bridged(self, t: Array) -> Array:
-        """Variance of where it was at `t`, m (m²), inside a displacement over a long time.
-
-        Only its two ends are known: between them the bearer may have walked anywhere, a Brownian bridge.
-        """
-        right = np.clip(np.searchsorted(self._marks, t, side="left"), 1, max(len(self._marks) - 1, 1))
-        if len(self._marks) == 1:
-            return np.zeros(len(t))
-        before, after = self._marks[right - 1], self._marks[right]
-        span = after - before
-        inside = (span > LONG_STEP_S) & (t > before) & (t < after)
-        return np.where(
-            inside, physics.SILENT_M_PER_ROOT_S**2 * (t - before) * (after - t) / np.maximum(span, 1e-9), 0.0
-        )
-
-    def between(self, since: Array, until: Array) -> Array:
-        """What lies between epochs, m × 12, moments from `since` on; silence adds a random walk."""
-        since, until = np.ascontiguousarray(since), np.ascontiguousarray(until)
-        found = sums_between(self._begin, self._marks, self._sums, since, until)
-        silent = np.clip(until - np.maximum(since, self._marks[-1]), 0.0, LONGEST_S)
-        wander = physics.SILENT_M_PER_ROOT_S**2 * silent
-        found[:, 6] += wander
-        found[:, 7] += 0.1 * wander
-        return np.asarray(found)
-
-
-@njit(cache=True)
-def sum_up_to(marks: Array, sums: Array, t: float, found: Array) -> None:
-    """Sums of a way up to one epoch, 12: displacement 3, its first moment 3, variances 5, length.
-
-    Args:
-        marks: epochs at which displacements end, ascending; before them that at which the first one began.
-        sums: up to each of them.
-        t: the epoch.
-        found: takes the sums.
-    """
-    inside, last = min(max(t, marks[0]), marks[-1]), len(marks) - 1
-    right = min(max(np.searchsorted(marks, inside, side="right"), 1), last)
-    if last == 0:
-        found[:] = 0.0
-        return
-    span = marks[right] - marks[right - 1]
-    share = (inside - marks[right - 1]) / span if span > 0.0 else 1.0
-    for c in range(len(found)):
-        found[c] = sums[right - 1, c] + share * (sums[right, c] - sums[right - 1, c])
-
-
-@njit(cache=True)
-def sums_between(begin_t: float, marks: Array, sums: Array, since: Array, until: Array) -> Array:
-    """What a way's displacements say of it between epochs, m × 12, moments from `since` on."""
-    m, size = len(since), sums.shape[1]
-    found, before = np.empty((m, size)), np.empty(size)
-    for i in range(m):
-        sum_up_to(marks, sums, since[i], before)
-        sum_up_to(marks, sums, until[i], found[i])
-        for c in range(size):
-            found[i, c] -= before[c]
-        for c in range(3):
-            found[i, 3 + c] -= found[i, c] * (since[i] - begin_t)
-    return found
 
 
 class Motion(NamedTuple):

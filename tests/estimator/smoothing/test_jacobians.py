@@ -15,7 +15,8 @@ from estimator.measurements import bearing
 from estimator.smoothing.ends import Ends, place_ends
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.solve import Problem
-from estimator.smoothing.walks import STATES, Motion, Way, free_motions, led_by, unit_motion
+from estimator.smoothing.walks import STATES, Motion, free_motions, led_by, unit_motion
+from estimator.smoothing.ways import Way
 from tests.estimator.smoothing.windows import dense, fused, problem_of
 from tests.estimator.walks import two_responders
 
