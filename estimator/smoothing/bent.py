@@ -11,9 +11,8 @@ from estimator.measurements.range import range_slope
 from estimator.measurements.rssi import ANTENNA_M, rssi_slope
 from estimator.smoothing.ends import place_end
 from estimator.smoothing.linear import Readings
+from estimator.smoothing.walks import STATES
 
-MOVED = 12
-"""Numbers that the places of a pair depend on at most: two ends of six."""
 NOWHERE_M2 = 1e-6
 
 
@@ -53,8 +52,9 @@ def add_bends(
         corner: s × s, changed.
     """
     a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
-    axis, along, slope = np.empty((3, 3)), np.empty(3), np.empty((3, 2 * MOVED))
-    at = np.empty(MOVED, dtype=np.uint64)
+    bend, pulled_a, pulled_b = np.empty((3, 3)), np.empty((3, STATES)), np.empty((3, STATES))
+    at_a, at_b = np.empty(STATES, dtype=np.uint64), np.empty(STATES, dtype=np.uint64)
+    width = diagonal.shape[1]
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
     for i in chosen:
@@ -71,77 +71,126 @@ def add_bends(
         state = x[extra[i, 0 if kind == RANGE else 1]]
         bent = range_slope(squared, state) if kind == RANGE else rssi_slope(squared, state)
         across = -information[i] * residual[i] * bent
-        distance, flat = np.sqrt(squared), np.sqrt(level)
-        axis[0, 0], axis[0, 1], axis[0, 2] = -n / flat, e / flat, 0.0
-        axis[1, 0], axis[1, 1] = -e * u / (flat * distance), -n * u / (flat * distance)
-        axis[1, 2] = flat / distance
-        axis[2, 0], axis[2, 1], axis[2, 2] = e / distance, n / distance, u / distance
-        along[0], along[1] = across if signed else max(across, 0.0), max(across, 0.0)
-        along[2] = 0.0
+        along = 0.0
         if kind == RSSI:
-            along[2] = across * (1.0 - 2.0 * squared / (squared + ANTENNA_M * ANTENNA_M))
-            along[2] = along[2] if signed else max(along[2], 0.0)
-        if along[0] == 0.0 and along[1] == 0.0 and along[2] == 0.0:
+            along = across * (1.0 - 2.0 * squared / (squared + ANTENNA_M * ANTENNA_M))
+        upwards = max(across, 0.0)
+        if not signed:
+            across, along = upwards, max(along, 0.0)
+        if across == 0.0 and upwards == 0.0 and along == 0.0:
             continue
-        for way in range(3):
-            east, north, up = axis[way, 0], axis[way, 1], axis[way, 2]
-            for c in range(3):
-                slope[way, c], slope[way, 6 + c] = axis[way, c], -axis[way, c]
-                slope[way, 3 + c] = east * by_a[0, c] + north * by_a[1, c] + up * by_a[2, c]
-                slope[way, 9 + c] = -(east * by_b[0, c] + north * by_b[1, c] + up * by_b[2, c])
-        add_square(columns, i, slope, along, diagonal, wide, corner, slab[i], at)
+        bend_at(e, n, u, across, upwards, along, bend)
+        first, second = columns[i, 0], columns[i, STATES]
+        square, beside = diagonal[slab[i]], wide[slab[i]]
+        for c in range(STATES):
+            at_a[c], at_b[c] = columns[i, c], columns[i, STATES + c]
+        if 0 <= first < width:
+            pull(bend, by_a, pulled_a)
+            add_between(square, at_a, at_a, by_a, pulled_a, 1.0)
+        if 0 <= second < width:
+            pull(bend, by_b, pulled_b)
+            add_between(square, at_b, at_b, by_b, pulled_b, 1.0)
+            if 0 <= first < width:
+                add_between(square, at_a, at_b, by_a, pulled_b, -1.0)
+                add_between(square, at_b, at_a, by_b, pulled_a, -1.0)
+        if first >= width:
+            add_lasting(corner, first - width, first - width, bend, 1.0)
+            if 0 <= second < width:
+                add_beside(beside, at_b, first - width, pulled_b)
+        if second >= width:
+            add_lasting(corner, second - width, second - width, bend, 1.0)
+            if 0 <= first < width:
+                add_beside(beside, at_a, second - width, pulled_a)
+            elif first >= width:
+                add_lasting(corner, first - width, second - width, bend, -1.0)
+                add_lasting(corner, second - width, first - width, bend, -1.0)
 
 
 @njit(cache=True)
-def add_square(
-    columns: Integers,
-    row: int,
-    slope: Array,
-    along: Array,
-    diagonal: Array,
-    wide: Array,
-    corner: Array,
-    slab: int,
-    at: NDArray[np.uint64],
-) -> None:
-    """Add Hᵀ P⁻¹ H of three rows H to the blocks of their keyframe and of the border.
+def bend_at(e: float, n: float, u: float, across: float, upwards: float, along: float, bend: Array) -> None:
+    """A curvature that is given along three axes at right angles, by the place of one end.
 
     Args:
-        columns: see `add_bends`.
-        row: which of them is theirs.
-        slope: derivatives, 3 × 12, and room for as many.
-        along: P⁻¹, 3.
-        diagonal: see `add_bends`.
-        wide: see `add_bends`.
-        corner: see `add_bends`.
-        slab: their keyframe.
-        at: room for 12 columns.
+        e: the line of sight, east (m).
+        n: the same, north (m).
+        u: the same, up (m).
+        across: along the horizontal axis across the line of sight.
+        upwards: along the other axis across it.
+        along: along the line of sight itself.
+        bend: takes it, 3 × 3.
     """
-    width, count = diagonal.shape[1], 0
-    for c in range(MOVED):
-        if 0 <= columns[row, c] < width:
-            at[count] = columns[row, c]
-            for way in range(3):
-                slope[way, MOVED + count] = slope[way, c]
-            count += 1
-    moving = count
-    for c in range(MOVED):
-        if columns[row, c] >= width:
-            at[count] = columns[row, c] - width
-            for way in range(3):
-                slope[way, MOVED + count] = slope[way, c]
-            count += 1
-    first, second, third = slope[0, MOVED:], slope[1, MOVED:], slope[2, MOVED:]
-    square, beside = diagonal[slab], wide[slab]
-    for i in range(moving):
-        own, across = square[at[i]], beside[at[i]]
-        by_first, by_second, by_third = along[0] * first[i], along[1] * second[i], along[2] * third[i]
-        for j in range(moving):
-            own[at[j]] += by_first * first[j] + by_second * second[j] + by_third * third[j]
-        for j in range(moving, count):
-            across[at[j]] += by_first * first[j] + by_second * second[j] + by_third * third[j]
-    for i in range(moving, count):
-        own = corner[at[i]]
-        by_first, by_second, by_third = along[0] * first[i], along[1] * second[i], along[2] * third[i]
-        for j in range(moving, count):
-            own[at[j]] += by_first * first[j] + by_second * second[j] + by_third * third[j]
+    level = e * e + n * n
+    squared = level + u * u
+    flat, distance = np.sqrt(level), np.sqrt(squared)
+    right_e, right_n = -n / flat, e / flat
+    over_e, over_n, over_u = -e * u / (flat * distance), -n * u / (flat * distance), flat / distance
+    there_e, there_n, there_u = e / distance, n / distance, u / distance
+    bend[0, 0] = across * right_e * right_e + upwards * over_e * over_e + along * there_e * there_e
+    bend[1, 1] = across * right_n * right_n + upwards * over_n * over_n + along * there_n * there_n
+    bend[2, 2] = upwards * over_u * over_u + along * there_u * there_u
+    bend[0, 1] = across * right_e * right_n + upwards * over_e * over_n + along * there_e * there_n
+    bend[0, 2] = upwards * over_e * over_u + along * there_e * there_u
+    bend[1, 2] = upwards * over_n * over_u + along * there_n * there_u
+    bend[1, 0], bend[2, 0], bend[2, 1] = bend[0, 1], bend[0, 2], bend[1, 2]
+
+
+@njit(cache=True)
+def pull(bend: Array, turned: Array, pulled: Array) -> None:
+    """`pulled`, B [1 T], 3 × 6, of a curvature B (3 × 3) and the derivatives T (3 × 3) of an end's place."""
+    for r in range(3):
+        for c in range(3):
+            pulled[r, c] = bend[r, c]
+            pulled[r, 3 + c] = (
+                bend[r, 0] * turned[0, c] + bend[r, 1] * turned[1, c] + bend[r, 2] * turned[2, c]
+            )
+
+
+@njit(cache=True)
+def add_between(
+    square: Array,
+    rows: NDArray[np.uint64],
+    columns: NDArray[np.uint64],
+    turned: Array,
+    pulled: Array,
+    sign: float,
+) -> None:
+    """Add ±[1 T]ᵀ `pulled` to the block of two moving ends.
+
+    Args:
+        square: of their keyframe, n × n, changed.
+        rows: the numbers of one end, 6.
+        columns: those of the other, 6.
+        turned: T of the one.
+        pulled: see `pull`, of the other.
+        sign: 1 or −1.
+    """
+    for r in range(3):
+        own, turns = rows[r], rows[3 + r]
+        for c in range(STATES):
+            square[own, columns[c]] += sign * pulled[r, c]
+            square[turns, columns[c]] += sign * (
+                turned[0, r] * pulled[0, c] + turned[1, r] * pulled[1, c] + turned[2, r] * pulled[2, c]
+            )
+
+
+@njit(cache=True)
+def add_beside(beside: Array, rows: NDArray[np.uint64], start: int, pulled: Array) -> None:
+    """Add −`pulled`ᵀ to a keyframe's border: between a moving end and one that stands.
+
+    Args:
+        beside: n × (s + 1), changed.
+        rows: the numbers of the moving end, 6.
+        start: first column of the one that stands.
+        pulled: see `pull`, of the moving end.
+    """
+    for c in range(STATES):
+        for r in range(3):
+            beside[rows[c], start + r] -= pulled[r, c]
+
+
+@njit(cache=True)
+def add_lasting(corner: Array, row: int, column: int, bend: Array, sign: float) -> None:
+    """Add ±B to the corner, at the first row and column of two ends that stand."""
+    for r in range(3):
+        for c in range(3):
+            corner[row + r, column + c] += sign * bend[r, c]
