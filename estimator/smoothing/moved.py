@@ -5,6 +5,8 @@ another one. A link between two nodes that stay may lose power for good: paper A
 fire.
 """
 
+from collections.abc import Sequence
+from operator import itemgetter
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -15,18 +17,24 @@ from estimator.fusion.modes import CAUCHY, Sought, find_modes
 from estimator.fusion.nodes import NodeState
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
-from estimator.graph.robust import cauchy_cost
+from estimator.graph.robust import cauchy_cost, mixture_cost
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.solve import Problem, Solved
 
 Flags = NDArray[np.bool_]
 
+ALL_KINDS, BY_KIND = ((RANGE, RSSI),), ((RANGE,), (RSSI,))
+"""Kinds of readings that are asked together. Signals from afar say little of a place: among them ranges that
+disagree are not noticed. Where a window has not come to rest, its residuals are its own: there all are asked
+together, and ranges alone only raise a suspicion."""
 RECENT_S = 120.0
 READINGS_MIN = 5
 SUSPICION = 6.0
 """How much worse than usual, in log likelihood, readings are together before another place is looked for."""
 USUAL_COST = 1.0
+LATEST = 3
+"""So many later beginnings of a disagreement are looked at as well."""
 GAIN = 10.0
 """How much better the other place must explain them: odds of 1 to 20,000 for one more place."""
 FAR_M = 1.5
@@ -70,44 +78,64 @@ def moved_nodes(problem: Problem, solved: Solved) -> tuple[list[Moved], bool]:
     now = float(problem.layout.grid[-1])
     cost = cauchy_cost(solved.linear.residual[:m] / rows.sigma[:m], CAUCHY)
     recent = (rows.pairs[:, 0] > now - RECENT_S) & (kinds <= RSSI)
-    found, suspected = [], False
+    found: list[tuple[float, Moved]] = []
+    suspected = False
     for node in state.nodes.values():
         if node.mode != "static" or node.role == "anchor":
             continue
-        mine = np.flatnonzero(recent & ((rows.pairs[:, 2] == node.index) | (rows.pairs[:, 3] == node.index)))
-        mine = mine[np.argsort(rows.pairs[mine, 0], kind="stable")]
-        first = _disagreeing(cost[mine])
-        if first is None:
-            continue
-        seen = _seen(problem, solved, node, mine[first:])
-        place = None if seen is None else _elsewhere(seen)
-        if seen is None or place is None:
-            suspected = True
-            continue
-        # What drew the node off its place may be the newest readings, and what disagrees all the others.
-        newest = _disagreeing(seen.costs(seen.residual_at(place)))
-        since_t = float(seen.t[0 if newest is None else newest])
-        found.append(Moved(node.node, since_t, int((rows.pairs[mine, 0] >= since_t).sum())))
-    return found, suspected
+        own = recent & ((rows.pairs[:, 2] == node.index) | (rows.pairs[:, 3] == node.index))
+        for together in BY_KIND if solved.rests else (*ALL_KINDS, *BY_KIND):
+            mine = np.flatnonzero(own & np.isin(kinds, together))
+            mine = mine[np.argsort(rows.pairs[mine, 0], kind="stable")]
+            starts = _disagreeing(cost[mine])
+            if not starts:
+                continue
+            judged = solved.rests or together in ALL_KINDS
+            better = _better(problem, solved, node, [mine[first:] for first in starts]) if judged else None
+            if better is None:
+                suspected = True
+                continue
+            seen, place = better
+            # What drew the node off its place may be the newest readings, and what disagrees all the others.
+            newest = _disagreeing(seen.costs(seen.residual_at(place.position_m)))
+            since_t = float(seen.t[newest[0] if newest else 0])
+            moved = Moved(node.node, since_t, int((rows.pairs[own, 0] >= since_t).sum()))
+            found.append((place.gain, moved))
+            break
+    if solved.rests and found:
+        # One that lies elsewhere makes its neighbours seem to: they are asked again without it.
+        return [max(found, key=itemgetter(0))[1]], suspected or len(found) > 1
+    return [moved for _, moved in found], suspected
 
 
-def _costs(residual: Array, sigma: Array, ranged: Flags, alike: Array) -> Array:
+def _costs(residual: Array, sigma: Array, noise: Array, ranged: Flags, alike: Array) -> Array:
     """How much readings are worse than perfect ones, each in log likelihood.
 
     A wall makes all ranges too long that are measured through it. k of them that may share it are neither k
     witnesses nor one: they count as 2 √k.
     """
-    cost: Array = cauchy_cost(residual / sigma, CAUCHY)
+    at_best = np.zeros(len(sigma))
+    cost = mixture_cost(residual, sigma, *noise.T) - mixture_cost(at_best, sigma, *noise.T)
+    cost = np.minimum(cost, cauchy_cost(residual / sigma, CAUCHY))
     return np.where(ranged & (residual > 0.0), cost / np.sqrt(alike), cost)
 
 
-def _disagreeing(cost: Array) -> int | None:
-    """From where on readings, in order of epoch, disagree with a place by their costs; None: they do not."""
+def _disagreeing(cost: Array) -> list[int]:
+    """From where on readings, in order of epoch, may disagree with a place by their costs.
+
+    Where they do most of all in front, then the latest ones at which they begin to: an outlier from before
+    the node was moved belongs to its old place.
+    """
     if len(cost) < READINGS_MIN:
-        return None
-    from_here = np.cumsum((cost - USUAL_COST)[::-1])[::-1]
-    first = int(np.argmax(from_here[: len(cost) - READINGS_MIN + 1]))
-    return None if from_here[first] < SUSPICION else first
+        return []
+    last = len(cost) - READINGS_MIN + 1
+    from_here = np.cumsum((cost - USUAL_COST)[::-1])[::-1][:last]
+    bad = cost > USUAL_COST
+    begins = bad[:last] & ~np.concatenate([[False], bad[: last - 1]]) & (from_here >= SUSPICION)
+    first = int(np.argmax(from_here))
+    if from_here[first] < SUSPICION:
+        return []
+    return [first, *(i for i in np.flatnonzero(begins)[-LATEST:].tolist() if i != first)]
 
 
 class _Seen(NamedTuple):
@@ -118,6 +146,7 @@ class _Seen(NamedTuple):
         sought: what they say.
         place_m: where the node is thought to be, 3 (m).
         residual: of the readings there, m.
+        noise: outliers, shift and spread of each, m × 3.
         alike: how many readings share an error, as each counts, m.
     """
 
@@ -125,12 +154,13 @@ class _Seen(NamedTuple):
     sought: Sought
     place_m: Array
     residual: Array
+    noise: Array
     alike: Array
 
     def costs(self, residual: Array) -> Array:
         """What the readings cost with residuals, each in log likelihood."""
         ranged = np.full(len(residual), self.sought.kind == "range")
-        return _costs(residual, self.sought.sigma, ranged, self.alike)
+        return _costs(residual, self.sought.sigma, self.noise, ranged, self.alike)
 
     def residual_at(self, place_m: Array) -> Array:
         """Residuals of the readings if the node were at a place (3, m), m."""
@@ -166,11 +196,19 @@ def _seen(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> 
         extra=solved.x[start : start + 2],
         extra_covariance=np.diag([1e-6, 1e-6]),
     )
-    return _Seen(rows.pairs[mine, 0], sought, place, solved.linear.residual[mine], rows.alike[mine])
+    residual, noise, alike = solved.linear.residual[mine], rows.noise[mine], rows.alike[mine]
+    return _Seen(rows.pairs[mine, 0], sought, place, residual, noise, alike)
 
 
-def _elsewhere(seen: _Seen) -> Array | None:
-    """A place that explains readings clearly better than the one that their node has, 3 (m)."""
+class _Place(NamedTuple):
+    """Where readings put a node, 3 (m), and how much better they fit there, in log likelihood."""
+
+    position_m: Array
+    gain: float
+
+
+def _elsewhere(seen: _Seen) -> _Place | None:
+    """A place that explains readings clearly better than the one that their node has."""
     modes = find_modes(seen.sought)
     if not modes:
         return None
@@ -178,7 +216,17 @@ def _elsewhere(seen: _Seen) -> Array | None:
     before = float(seen.costs(seen.residual).sum())
     after = float(seen.costs(seen.residual_at(best.position_m)).sum())
     far = float(np.hypot(*(best.position_m - seen.place_m)[:2])) > max(FAR_M, 2.0 * best.sigma_m)
-    return best.position_m if far and before - after > GAIN and after < len(seen.t) else None
+    clear = far and before - after > GAIN and after < len(seen.t)
+    return _Place(best.position_m, before - after) if clear else None
+
+
+def _better(
+    problem: Problem, solved: Solved, node: NodeState, parts: Sequence[Integers]
+) -> tuple[_Seen, _Place] | None:
+    """The part of a node's readings that most clearly puts it elsewhere, and where."""
+    asked = [seen for mine in parts if (seen := _seen(problem, solved, node, mine)) is not None]
+    better = [(seen, place) for seen in asked if (place := _elsewhere(seen)) is not None]
+    return max(better, key=lambda one: one[1].gain, default=None)
 
 
 def changed_links(problem: Problem) -> list[Changed]:

@@ -13,6 +13,7 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.position import Position
 from estimator.measurements.range import Range
+from estimator.measurements.rssi import Rssi
 from estimator.simulate import Scenario, scenario
 from estimator.trackers.kirchhoff import KirchhoffTracker
 
@@ -119,6 +120,26 @@ def test_a_breadcrumb_kicked_beside_a_straight_way_is_shown_nowhere_until_its_si
     place = {e.node: e.position_m for e in tracker.estimates()}["b1"]
     assert place is not None
     assert np.hypot(place[0] - 9.0, place[1] - 10.0) < 0.5
+
+
+def test_signals_from_afar_do_not_drown_the_ranges_of_who_passes_a_kicked_breadcrumb() -> None:
+    chance = np.random.default_rng(1)
+    tracker = KirchhoffTracker()
+    tracker.fold([Node(t=0.0, node="base", role="base", position_m=(-20.0, 10.0, 0.0))])
+    tracker.fold([Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.3)])
+    tracker.fold([Node(t=0.0, node="b1", role="breadcrumb", position_m=(4.0, 10.0, 0.0), sigma_m=0.3)])
+    walked = along([(0.0, 0.0), (0.0, 20.0), (0.0, 0.0)], (4.0, 10.0), 0.0)
+    walked += along([(0.0, 0.0), (0.0, 20.0), (10.0, 20.0)], (9.0, 10.0), 40.0)
+    heard = np.arange(1.0, 70.0, 0.05)
+    dbm = -40.0 - 22.0 * np.log10(26.0) + chance.normal(0.0, 5.0, len(heard))
+    signals = [
+        Rssi(t=t, a="base", b="b1", dbm=power) for t, power in zip(heard.tolist(), dbm.tolist(), strict=True)
+    ]
+    told: list[Notice] = []
+    for second in range(1, 71):
+        tracker.fold([r for r in (*walked, *signals) if second - 1.0 < r.t <= second])
+        told += tracker.take_notices()
+    assert [n.node for n in told if n.code == "node_moved"] == ["b1"]
 
 
 def test_a_fire_between_breadcrumbs_is_told_as_changed_links_and_moves_nothing() -> None:
