@@ -6,6 +6,9 @@ therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
 `FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE` and `WALL_M`. M marks what
 estimation.md reports as measured.
+
+Some stand in compiled functions, which keep the number that they were compiled with: after a change remove
+`__pycache__` (decision 0007).
 """
 
 from math import radians

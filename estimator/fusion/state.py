@@ -21,7 +21,7 @@ Count = Literal["fused", "not_fused", "outlier"]
 
 
 class FusionState:
-    """The Kirchhoff state and what surrounds it; copying is cheap, because every record is immutable.
+    """The Kirchhoff state and what surrounds it; copying is cheap, because nearly every record is immutable.
 
     Attributes:
         origin_wgs84: latitude (°), longitude (°), height (m) of the local origin, if known.

@@ -252,7 +252,6 @@ class Ends:
         columns: its six columns, m × 6: of the keyframe, or of the border counted after it; −1: none.
         usable: it has a place in the window at its epoch.
         stood: all of that, of the ends before any were left out.
-        moving: it is of a node that moves, m.
         unsure_m2: variances that a unit's own noise adds since its keyframe, m × 3 (m²).
         table: what its place follows from.
     """
@@ -275,7 +274,6 @@ class Ends:
             if walk.way is not None:
                 walk.way.lay_out(walk.number, numbers, stood.since_t, t, laid)
         delta_m, moment, self.unsure_m2 = laid
-        self.moving = (stood.kind == UNIT) | (stood.kind == FREE)
         self.table = Table(stood.kind, stood.flat, stood.fixed_m, delta_m, moment, t - stood.since_t)
 
     @property
@@ -292,7 +290,7 @@ class Ends:
         if chosen.all():
             return
         self.slab, self.columns, self.usable = self.slab[chosen], self.columns[chosen], self.usable[chosen]
-        self.moving, self.unsure_m2 = self.moving[chosen], self.unsure_m2[chosen]
+        self.unsure_m2 = self.unsure_m2[chosen]
         kind, at, fixed_m, delta_m, moment, duration_s = self.table
         self.table = Table(
             kind[chosen], at[chosen], fixed_m[chosen], delta_m[chosen], moment[chosen], duration_s[chosen]

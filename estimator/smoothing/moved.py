@@ -27,7 +27,7 @@ Flags = NDArray[np.bool_]
 ALL_KINDS, BY_KIND = ((RANGE, RSSI),), ((RANGE,), (RSSI,))
 """Kinds of readings that are asked together. Signals from afar say little of a place: among them ranges that
 disagree are not noticed. Where a window has not come to rest, its residuals are its own: there all are asked
-together, and ranges alone only raise a suspicion."""
+together, and one kind alone only raises a suspicion."""
 RECENT_S = 120.0
 READINGS_MIN = 5
 SUSPICION = 6.0
@@ -100,6 +100,9 @@ def moved_nodes(problem: Problem, solved: Solved) -> tuple[list[Moved], bool]:
             newest = _disagreeing(seen.costs(seen.residual_at(place.position_m)))
             since_t = float(seen.t[newest[0] if newest else 0])
             moved = Moved(node.node, since_t, int((rows.pairs[own, 0] >= since_t).sum()))
+            if RANGE not in together and _contradicted(problem, solved, node, place.position_m, since_t):
+                suspected = True
+                continue
             found.append((place.gain, moved))
             break
     if solved.rests and found:
@@ -229,6 +232,17 @@ def _better(
     return max(better, key=lambda one: one[1].gain, default=None)
 
 
+def _contradicted(problem: Problem, solved: Solved, node: NodeState, place_m: Array, since_t: float) -> bool:
+    """Whether a node's ranges since an epoch fit another place worse: a fire weakens all its signals."""
+    pairs = problem.rows.pairs
+    own = (pairs[:, 2] == node.index) | (pairs[:, 3] == node.index)
+    ranges = np.flatnonzero(own & (pairs[:, 1] == RANGE) & (pairs[:, 0] >= since_t))
+    seen = _seen(problem, solved, node, ranges)
+    return seen is not None and bool(
+        seen.costs(seen.residual_at(place_m)).sum() > seen.costs(seen.residual).sum() + USUAL_COST
+    )
+
+
 def changed_links(problem: Problem) -> list[Changed]:
     """Links between standing nodes whose power has lastingly changed in the last seconds of the window."""
     layout, pairs = problem.layout, problem.rows.pairs
@@ -236,8 +250,10 @@ def changed_links(problem: Problem) -> list[Changed]:
     now = float(layout.grid[-1])
     still = np.isin(pairs[:, 2], standing) & np.isin(pairs[:, 3], standing) & (pairs[:, 1] == RSSI)
     found = []
-    for link in np.unique(pairs[still, 9]).tolist():
-        mine = pairs[still & (pairs[:, 9] == link)]
+    # A node that was moved keeps its links, and has another number at its new place.
+    between = np.column_stack([np.sort(pairs[:, 2:4], axis=1), pairs[:, 9]])
+    for link in np.unique(between[still], axis=0):
+        mine = pairs[still & (between == link).all(axis=1)]
         after, before = mine[mine[:, 0] > now - AFTER_S], mine[mine[:, 0] < now - BEFORE_S]
         if len(after) < LINK_READINGS_MIN or len(before) < LINK_READINGS_MIN:
             continue

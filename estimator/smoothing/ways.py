@@ -102,7 +102,7 @@ def summed(begin_t: float, steps: Array, by_place: float, by_turn: float) -> tup
 
 @njit(cache=True)
 def sum_up_to(marks: Array, sums: Array, t: float, found: Array) -> None:
-    """Sums of a way up to one epoch, 12.
+    """Sums of a way up to one epoch: as many as `found` takes.
 
     Args:
         marks: epochs at which displacements end, ascending; before them that at which the first one began.

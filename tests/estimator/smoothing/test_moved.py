@@ -142,6 +142,28 @@ def test_signals_from_afar_do_not_drown_the_ranges_of_who_passes_a_kicked_breadc
     assert [n.node for n in told if n.code == "node_moved"] == ["b1"]
 
 
+def test_a_breadcrumb_whose_signals_weaken_but_whose_ranges_agree_has_not_moved() -> None:
+    chance = np.random.default_rng(2)
+    tracker = KirchhoffTracker()
+    tracker.fold([Node(t=0.0, node="base", role="base"), Node(t=0.0, node="ff1", role="responder")])
+    tracker.fold([Node(t=0.0, node="b1", role="breadcrumb", position_m=(4.0, 10.0, 0.0), sigma_m=0.3)])
+    there, back = [(0.0, 0.0), (0.0, 20.0), (8.0, 20.0)], [(8.0, 20.0), (0.0, 20.0), (0.0, 0.0)]
+    walked = along(there, (4.0, 10.0), 0.0) + along(back, (4.0, 10.0), 28.0)
+    places = {r.t: r.position_m for r in walked if isinstance(r, Position) and r.position_m is not None}
+    signals: list[AnyReading] = []
+    for t, (e, n, _) in places.items():
+        lost_db = 15.0 if t > 28.0 else 0.0
+        expected = -45.0 - lost_db - 22.0 * math.log10(math.hypot(e - 4.0, n - 10.0))
+        for k in range(5):
+            power = expected + float(chance.normal(0.0, 3.0))
+            signals.append(Rssi(t=t - 0.1 * k, a="ff1", b="b1", dbm=power))
+    told: list[Notice] = []
+    for second in range(1, 57):
+        tracker.fold([r for r in (*walked, *signals) if second - 1.0 < r.t <= second])
+        told += tracker.take_notices()
+    assert not [n for n in told if n.code == "node_moved"]
+
+
 def test_a_fire_between_breadcrumbs_is_told_as_changed_links_and_moves_nothing() -> None:
     notices, _ = followed(scenario("burned-breadcrumb", 1), 205.0)
     changed = [n for n in notices if n.code == "link_changed"]
