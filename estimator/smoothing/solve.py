@@ -20,7 +20,7 @@ from estimator.smoothing.walks import STATES, Free, Motion, free_motions, misfit
 
 ACCEPTED = 1e-3
 """Rise of the negative log likelihood that counts as rounding."""
-RESTING = 0.005
+RESTING = 0.001
 SLACK_DB_PER_M = 4.0
 """What a metre makes of a signal's power a few metres away."""
 NEAR = 1.0

@@ -10,25 +10,15 @@ from hypothesis import strategies as st
 from estimator.fusion import physics
 from estimator.fusion.ledger import BODY_BEARING, RANGE, RSSI
 from estimator.graph.dense import Array
-from estimator.graph.robust import Weighted
 from estimator.measurements import bearing
-from estimator.measurements.range import predict_range
-from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.ends import Ends, place_ends
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.walks import STATES, Motion, free_motions, led_by, unit_motion
 from estimator.smoothing.ways import Way
-from tests.estimator.smoothing.windows import dense, fused, problem_of
-from tests.estimator.walks import two_responders
+from tests.estimator.smoothing.windows import difference, random_state
 
 seeds = st.integers(0, 10_000)
-
-
-def difference(function: Callable[[Array], Array], x: Array, step: float = 1e-5) -> Array:
-    """Central differences, outputs × inputs."""
-    columns = [(function(x + step * e) - function(x - step * e)) / (2.0 * step) for e in np.eye(len(x))]
-    return np.stack(columns, axis=-1)
 
 
 def steps_of(seed: int, count: int = 40) -> Array:
@@ -145,33 +135,6 @@ def test_the_motion_of_a_node_without_pdr_is_the_same_in_one_step_and_in_two() -
     assert carried == pytest.approx(one.noise[0], abs=1e-5)
 
 
-@pytest.fixture(scope="module")
-def incident() -> Problem:
-    """A unit, a node without one, an anchor, a beacon, breadcrumbs; ranges, RSSI, bearings, fixes, drops."""
-    state = fused(two_responders(40))
-    # Its bearings are absolute: some are told from the body instead, so that ψ has a part in them.
-    pairs = state.ledger.table("pairs").copy()
-    pairs[np.flatnonzero(pairs[:, 1] > RSSI)[::2], 1] = BODY_BEARING
-    state.ledger.replace("pairs", pairs)
-    # And some single readings tell a height, a gyro bias and a scale.
-    singles = state.ledger.table("singles").copy()
-    singles[:3, 2] = [4.0, 5.0, 2.0]
-    state.ledger.replace("singles", singles)
-    return problem_of(state)
-
-
-def random_state(problem: Problem, seed: int) -> Array:
-    """Somewhere about the estimate, so far off that nothing is small."""
-    chance = np.random.default_rng(seed)
-    layout = problem.layout
-    x = layout.start()
-    keyframes = x[: layout.length * layout.width].reshape(layout.length, -1, STATES)
-    keyframes[:, :, :3] += chance.normal(0.0, 3.0, keyframes[:, :, :3].shape)
-    keyframes[:, :, 3:] += chance.normal(0.0, 0.1, keyframes[:, :, 3:].shape)
-    x[layout.length * layout.width :] += chance.normal(0.0, 0.3, layout.border)
-    return x
-
-
 def spread(rows: Rows, jacobian: Array, problem: Problem) -> Array:
     """Jacobians by the columns of each row as one by the flat unknowns."""
     found = np.zeros((len(rows.slab), problem.layout.length * problem.layout.width + problem.layout.border))
@@ -223,49 +186,6 @@ def test_the_rows_of_a_window_change_with_its_unknowns_as_told(incident: Problem
         by_heading[own] = -1.0 if counted else 0.0
         expected[row] = by_heading + share * (expected[row] - by_heading)
     assert np.abs(told - expected).max() < 1e-5 * (1.0 + np.abs(expected).max())
-
-
-def bent(problem: Problem, x: Array, weight: Array, signed: bool) -> Array:
-    """What the curvature of distances adds to the normal matrix, with P⁻¹ r of the pairs."""
-    weighted = Weighted(np.ones(len(weight)), weight, np.ones(len(weight)))
-    chain = problem.assemble(x, problem.linearise(x), weighted, problem.motions(x))
-    before, _ = dense(chain)
-    problem.bend(chain, x, weighted, signed)
-    return np.asarray(dense(chain)[0] - before)
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_distances_bend_as_their_slopes_change(incident: Problem, seed: int) -> None:
-    """−Σ P⁻¹ r Dᵀ ∂²h/∂p² D: p is what lies between the ends, D how it changes with the unknowns."""
-    chance = np.random.default_rng(seed)
-    rows, layout = incident.rows, incident.layout
-    x, m, size = random_state(incident, seed), len(rows.pairs), layout.length * layout.width
-    # Ranges that are too long and powers that are too great bend upwards everywhere across.
-    weight = np.zeros(len(rows.slab))
-    kinds = rows.pairs[:, 1]
-    weight[:m] = np.abs(chance.normal(0.0, 1.0, m)) * np.select([kinds == RANGE, kinds == RSSI], [-1.0, 1.0])
-    expected = np.zeros((len(x), len(x)))
-    changes = difference(lambda at: np.subtract(*rows.places(at)).ravel(), x).reshape(m, 3, -1)
-    a, b = rows.places(x)
-    for kind, predict in ((RANGE, predict_range), (RSSI, predict_rssi)):
-        mine = np.flatnonzero(kinds == kind)
-        one, two = x[size - layout.width + rows.columns[mine, 12:14]].T
-        around = [np.eye(3)[c] * step for step in (1e-5, -1e-5) for c in range(3)]
-        slopes = [predict(a[mine] + off_m, b[mine], one, two).by_a for off_m in around]
-        curved = np.stack([(slopes[c] - slopes[3 + c]) / 2e-5 for c in range(3)], axis=-1)
-        for row, curvature in zip(mine.tolist(), curved, strict=True):
-            expected -= weight[row] * changes[row].T @ curvature @ changes[row]
-    told = bent(incident, x, weight, signed=True)
-    assert np.abs(told - expected).max() < 1e-4 * np.abs(expected).max()
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_far_from_the_optimum_only_what_bends_upwards_is_taken(incident: Problem, seed: int) -> None:
-    weight = np.random.default_rng(seed).normal(0.0, 1.0, len(incident.rows.slab))
-    told = bent(incident, random_state(incident, seed), weight, signed=False)
-    eigenvalues = np.linalg.eigvalsh(told)
-    assert eigenvalues[-1] > 0.0
-    assert eigenvalues[0] > -1e-6 * eigenvalues[-1]
 
 
 @pytest.mark.parametrize("seed", range(3))

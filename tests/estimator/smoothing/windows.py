@@ -1,7 +1,7 @@
 """Readings made into the least-squares problem of their window, as the smoothed view makes them."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -16,6 +16,7 @@ from estimator.smoothing.extent import spacing_s
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.walks import STATES
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import online_pass
 
@@ -89,3 +90,21 @@ def unlikelihood(problem: Problem, solved: Solved) -> float:
     half = float(np.log(np.diagonal(np.linalg.cholesky(matrix * scale * scale[:, None])) / scale).sum())
     cost = problem.cost(solved.x, solved.linear.residual, motions)
     return cost + half + 0.5 * sum(float(np.linalg.slogdet(m.noise)[1].sum()) for m in motions)
+
+
+def difference(function: Callable[[Array], Array], x: Array, step: float = 1e-5) -> Array:
+    """Central differences, outputs × inputs."""
+    columns = [(function(x + step * e) - function(x - step * e)) / (2.0 * step) for e in np.eye(len(x))]
+    return np.stack(columns, axis=-1)
+
+
+def random_state(problem: Problem, seed: int) -> Array:
+    """Somewhere about the estimate, so far off that nothing is small."""
+    chance = np.random.default_rng(seed)
+    layout = problem.layout
+    x = layout.start()
+    keyframes = x[: layout.length * layout.width].reshape(layout.length, -1, STATES)
+    keyframes[:, :, :3] += chance.normal(0.0, 3.0, keyframes[:, :, :3].shape)
+    keyframes[:, :, 3:] += chance.normal(0.0, 0.1, keyframes[:, :, 3:].shape)
+    x[layout.length * layout.width :] += chance.normal(0.0, 0.3, layout.border)
+    return x
