@@ -5,10 +5,10 @@ import numpy as np
 from estimator.fusion.descent import descend
 from estimator.fusion.free import free_motion
 from estimator.fusion.modes import Sought, find_modes
-from estimator.fusion.pair_rows import PAIR, pair_rows
+from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.rows import FIELDS, ONE
 from estimator.fusion.update import tally
-from estimator.fusion.way import offset
+from estimator.fusion.way import End, offset
 from estimator.graph.dense import factorise, inverse
 from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute
 from estimator.graph.kirchhoff import Kirchhoff
@@ -20,7 +20,8 @@ from estimator.measurements.displacement import move
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.bent import add_bends
-from estimator.smoothing.ends import Nodes, Table, choose, place_ends, stand
+from estimator.smoothing.chosen import choose
+from estimator.smoothing.ends import Nodes, Table, place_ends, stand
 from estimator.smoothing.learn import noise_scores
 from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals
 from estimator.smoothing.slips import gains, unsure
@@ -101,9 +102,10 @@ def _warm_filter() -> None:
     found = descend(table, graph.information.copy(), graph.vector, graph.reference, 1)
     told = found.residual, found.predicted, found.good
     tally(table, *told, np.zeros((1, 5)), np.zeros((1, 5)))
-    ends, marks = np.zeros((1, 13)), np.zeros((2, 4))
+    ends, marks = np.zeros((1, len(End._fields))), np.zeros((2, 4))
     offset(ends[0], marks, graph.reference, 0.0)
-    pair_rows(np.zeros((1, PAIR)), np.zeros((1, PAIR)), ends, marks, np.zeros((1, 5)), graph.reference)
+    technology = np.zeros((1, len(Technology._fields)))
+    pair_rows(np.zeros((1, PAIR)), technology, ends, marks, np.zeros((1, 5)), graph.reference)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 import msgspec
 
 from estimator.fusion.ledger import COLUMNS
-from estimator.fusion.links import Link, Links
+from estimator.fusion.links import Links
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.noise import LearnedNoise
 from estimator.fusion.prior import Key, Prior
@@ -32,7 +32,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     sightings: dict[str, int]
     waiting: tuple[AnyReading, ...]
     noise: dict[str, LearnedNoise]
-    links: tuple[list[Link], ArrayRecord]
+    links: tuple[list[tuple[str, str, str]], ArrayRecord]
     reference_pa: float | None
     counts: dict[str, int]
     said: list[str]
@@ -63,7 +63,7 @@ def record_of(state: FusionState) -> FusionRecord:
         dict(state.sightings),
         state.waiting,
         dict(state.noise),
-        ([Link(*link) for link in state.links.numbers], pack(state.links.table)),
+        (list(state.links.numbers), pack(state.links.table)),
         state.reference_pa,
         dict(state.counts),
         list(state.said),

@@ -1,7 +1,7 @@
 """What readings that follow each other on one link have in common."""
 
 import math
-from typing import NamedTuple, Self
+from typing import Self
 
 import numpy as np
 from numba import njit
@@ -19,20 +19,6 @@ NONE: Array = np.zeros((0, 5))
 SPARE = 16
 
 
-class Link(NamedTuple):
-    """What a link is told by.
-
-    Attributes:
-        source: the technology that its noise is learned for.
-        a: the end whose name comes first.
-        b: the other end.
-    """
-
-    source: str
-    a: str
-    b: str
-
-
 class Links:
     """The newest reading on each link, as a table that grows by doubling.
 
@@ -41,7 +27,8 @@ class Links:
         table: their newest readings, links × 5 or more; both are taken over.
 
     Attributes:
-        numbers: the row of each link, which is its number in the ledger as well.
+        numbers: the row of each link, which is its number in the ledger as well, by the technology that its
+            noise is learned for and the names of both ends, in order.
     """
 
     def __init__(self, numbers: dict[tuple[str, str, str], int] | None = None, table: Array = NONE) -> None:
@@ -66,6 +53,12 @@ class Links:
             if found == len(self._table):
                 self._table = np.concatenate([self._table, np.tile(NEW, (found + SPARE, 1))])
         return found
+
+    def renew(self, node: str) -> None:
+        """Forget the errors of a node's links: it lies elsewhere."""
+        for (_, a, b), number in self.numbers.items():
+            if node in (a, b):
+                self.table[number] = NEW
 
 
 @njit(cache=True, error_model="numpy")

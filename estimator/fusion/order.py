@@ -21,6 +21,6 @@ def tick_of(t: float) -> int:
     return math.ceil(t / TICK_S - 1e-6)
 
 
-def end_of(tick: int) -> float:
+def end_of_tick(tick: int) -> float:
     """Epoch at which a tick ends, Unix seconds."""
     return tick * TICK_S

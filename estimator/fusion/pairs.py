@@ -22,7 +22,9 @@ from estimator.measurements.rssi import Rssi
 
 SENT = "sent"
 """Owner of the path-loss states of radios that tell the power they send with; "" for those that do not."""
-UNTOLD_POWER, TOLD_POWER = "rssi ", f"rssi {SENT}"
+UNTOLD_POWER = "rssi "
+TOLD_POWER = UNTOLD_POWER + SENT
+"""Technologies of signals; the owner of their path-loss states stands after the first."""
 AnyPair = Range | Rssi | Bearing
 
 
@@ -84,11 +86,11 @@ class Pairs:
             else:
                 fused += self._bear(a, b, reading)
                 continue
+            if kind == RANGE and "unit" in (a.node.mode, b.node.mode):
+                state.uncalibrated.setdefault(source, physics.UNCALIBRATED)
             technology = numbers.get(source)
             if technology is None:
                 technology = self._technology(kind, source, between)
-            if kind == RANGE and "unit" in (a.node.mode, b.node.mode):
-                state.uncalibrated.setdefault(source, physics.UNCALIBRATED)
             link = link_of(source, name_a, name_b)
             told += (t, value, sigma, constant, technology, link, a.number, b.number)
             fused += between

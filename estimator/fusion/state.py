@@ -106,7 +106,8 @@ class FusionState:
         return found
 
     def number(self, name: str) -> int:
-        """A new number in the ledger for a node."""
+        """A new number in the ledger for a node, which enters or lies elsewhere now."""
+        self.links.renew(name)
         self.owners = (*self.owners, name)
         return len(self.owners) - 1
 

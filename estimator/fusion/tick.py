@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import beginnings, free, held, introduce, motion, physics
-from estimator.fusion.pairs import Pairs
+from estimator.fusion.pairs import AnyPair, Pairs
 from estimator.fusion.rows import Single, table_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.update import update
@@ -123,7 +123,7 @@ def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Sing
         singles: what is held along with them; more is added.
     """
     until: dict[str, float] = {}
-    between: list[Range | Rssi | Bearing] = []
+    between: list[AnyPair] = []
     others: list[AnyReading] = []
     for reading in readings:
         if isinstance(reading, PAIRS):

@@ -13,6 +13,7 @@ from estimator.fusion import physics
 from estimator.fusion.introduce import tuple_of
 from estimator.fusion.ledger import RANGE
 from estimator.fusion.nodes import NodeState
+from estimator.fusion.pairs import UNTOLD_POWER
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 
@@ -95,7 +96,7 @@ def _link(state: FusionState, node: NodeState) -> Link:
         source = state.sources[int(mine[-1, 6])]
         sigma = float(mine[-1, 5]) * state.learned(source).factor
         return Link(True, sigma, 2.0, RANGE_REACH_M)
-    sigma = physics.RSSI_SIGMA_DB * state.learned("rssi ").factor
+    sigma = physics.RSSI_SIGMA_DB * state.learned(UNTOLD_POWER).factor
     return Link(False, sigma, physics.RSSI_EXPONENT, RSSI_REACH_M)
 
 

@@ -1,19 +1,16 @@
 """Where the ends of readings are, for any estimate: keyframes with what was walked since, or what stands."""
 
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from estimator.fusion.ledger import RSSI
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.walks import STATES, lead
 from estimator.smoothing.ways import Laid
-
-Row = TypeVar("Row", bound=np.generic)
 
 FIXED, STANDING, UNIT, FREE, UNPLACED = range(5)
 
@@ -196,62 +193,11 @@ def stand(
     return Stood(kind, slab, columns, flat, fixed, since, usable)
 
 
-class Chosen(NamedTuple):
-    """Which of m pairs have their places in a window.
-
-    Attributes:
-        chosen: m.
-        extra: columns of its technology, m × 2; −1: it has none.
-        slab: keyframe, m.
-        inside: it is a range or a power, and no end is outside the building, m.
-    """
-
-    chosen: NDArray[np.bool_]
-    extra: Integers
-    slab: Integers
-    inside: NDArray[np.bool_]
-
-
-@njit(cache=True)
-def choose(pairs: Array, a: Stood, b: Stood, technology: Integers, outside: NDArray[np.bool_]) -> Chosen:
-    """Choose the pairs whose ends and technology have places in a window.
-
-    Args:
-        pairs: rows of the ledger, m × 10.
-        a: their first ends.
-        b: their second ends.
-        technology: first column of each, kinds × sources; −1: there is none.
-        outside: whether each node of the ledger is outside the building.
-    """
-    m = len(pairs)
-    chosen, inside = np.empty(m, dtype=np.bool_), np.empty(m, dtype=np.bool_)
-    extra, slab = np.full((m, 2), -1), np.empty(m, dtype=np.int64)
-    for i in range(m):
-        kind, source, first, second = int(pairs[i, 1]), int(pairs[i, 6]), int(pairs[i, 2]), int(pairs[i, 3])
-        if kind <= RSSI and source >= 0 and technology[kind, source] >= 0:
-            extra[i, 0], extra[i, 1] = technology[kind, source], technology[kind, source] + 1
-        a_moves, b_moves = a.kind[i] in (UNIT, FREE), b.kind[i] in (UNIT, FREE)
-        chosen[i] = a.usable[i] and b.usable[i] and (extra[i, 0] >= 0 or kind > RSSI)
-        if (a_moves and b_moves and a.slab[i] != b.slab[i]) or (a.columns[i, 0] < 0 and b.columns[i, 0] < 0):
-            chosen[i] = False
-        slab[i] = a.slab[i] if a_moves else b.slab[i]
-        inside[i] = kind <= RSSI and not outside[first] and not outside[second]
-    return Chosen(chosen, extra, slab, inside)
-
-
-def kept(rows: NDArray[Row], chosen: NDArray[np.bool_]) -> NDArray[Row]:
-    """Some of m rows; the rows themselves where that is all of them."""
-    return rows if chosen.all() else rows[chosen]
-
-
 class Ends:
     """m ends of readings.
 
     Attributes:
-        slab: keyframe of each, m; 0 where it stands.
-        columns: its six columns, m × 6: of the keyframe, or of the border counted after it; −1: none.
-        usable: it has a place in the window at its epoch.
-        stood: all of that, of the ends before any were left out.
+        stood: between which numbers of the window they are.
         unsure_m2: variances that a unit's own noise adds since its keyframe, m × 3 (m²).
         table: what its place follows from.
     """
@@ -268,7 +214,7 @@ class Ends:
         lives = np.array([(w.first, w.last) for w in layout.walks], dtype=np.int64).reshape(-1, 2)
         known = nodes_of(layout) if nodes is None else nodes
         stood = stand(known, numbers, t, nearest, layout.grid, layout.times, lives)
-        self.slab, self.columns, self.usable, self.stood = stood.slab, stood.columns, stood.usable, stood
+        self.stood = stood
         laid = Laid(np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)))
         for walk in layout.walks if m else ():
             if walk.way is not None:
@@ -281,6 +227,21 @@ class Ends:
         """Whether each is of a node with a PDR unit, m."""
         return np.asarray(self.table.kind == UNIT)
 
+    @property
+    def slab(self) -> Integers:
+        """Keyframe of each, m; 0 where it stands."""
+        return self.stood.slab
+
+    @property
+    def columns(self) -> Integers:
+        """Its six columns, m × 6: of the keyframe, or of the border counted after it; −1: none."""
+        return self.stood.columns
+
+    @property
+    def usable(self) -> NDArray[np.bool_]:
+        """Whether each has a place in the window at its epoch, m."""
+        return self.stood.usable
+
     def take(self, chosen: NDArray[np.bool_]) -> None:
         """Keep only some of the ends.
 
@@ -289,9 +250,18 @@ class Ends:
         """
         if chosen.all():
             return
-        self.slab, self.columns, self.usable = self.slab[chosen], self.columns[chosen], self.usable[chosen]
-        self.unsure_m2 = self.unsure_m2[chosen]
+        stood = self.stood
+        self.stood = Stood(
+            stood.kind[chosen],
+            stood.slab[chosen],
+            stood.columns[chosen],
+            stood.flat[chosen],
+            stood.fixed_m[chosen],
+            stood.since_t[chosen],
+            stood.usable[chosen],
+        )
         kind, at, fixed_m, delta_m, moment, duration_s = self.table
         self.table = Table(
             kind[chosen], at[chosen], fixed_m[chosen], delta_m[chosen], moment[chosen], duration_s[chosen]
         )
+        self.unsure_m2 = self.unsure_m2[chosen]

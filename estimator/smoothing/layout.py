@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.fusion.nodes import NodeState
+from estimator.fusion.pairs import UNTOLD_POWER
 from estimator.fusion.prior import Key, Prior
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
@@ -142,7 +143,7 @@ class Layout:
 
 def technology_key(state: FusionState, variable: Variable) -> Key:
     """The block of a technology's states, by number of its source."""
-    name = variable.owner if variable.kind == "range" else f"rssi {variable.owner}"
+    name = variable.owner if variable.kind == "range" else UNTOLD_POWER + variable.owner
     return variable.kind, state.source(name)
 
 

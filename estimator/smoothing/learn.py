@@ -13,7 +13,7 @@ from numba import njit
 from estimator.fusion.calibration import narrow_sigma, scale_sigma, uncalibrated
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
-from estimator.smoothing.slips import Doubts, admit, find_slips, unsure_of
+from estimator.smoothing.slips import Doubts, admit, doubts_of, find_slips
 from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.walks import Motion
 
@@ -41,7 +41,7 @@ def learn(state: FusionState, problem: Problem, solved: Solved, step: float = ST
     """
     solved.chain.reduce()
     found, ahead, border = solved.chain.covariances()
-    doubts = unsure_of(problem, solved, found, ahead)
+    doubts = doubts_of(problem, solved, found, ahead)
     learn_walks(state, problem, solved, doubts, step)
     if solved.rests:
         slips = find_slips(problem, solved, doubts)
@@ -60,7 +60,7 @@ def learn_walks(
         state: its nodes take the factors.
         problem: of the window.
         solved: its solution.
-        doubts: see `slips.unsure_of`.
+        doubts: see `slips.doubts_of`.
         most: farthest that the logarithm of a variance moves.
     """
     for i, doubt in doubts.items():

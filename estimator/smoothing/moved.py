@@ -76,7 +76,9 @@ def moved_nodes(problem: Problem, solved: Solved) -> tuple[list[Moved], bool]:
     m = len(rows.pairs)
     kinds = rows.pairs[:, 1]
     now = float(problem.layout.grid[-1])
-    cost = cauchy_cost(solved.linear.residual[:m] / rows.sigma[:m], CAUCHY)
+    residual, sigma = solved.linear.residual[:m], rows.sigma[:m]
+    cost = cauchy_cost(residual / sigma, CAUCHY)
+    usual = _costs(residual, sigma, rows.noise[:m], kinds == RANGE, rows.alike[:m])
     recent = (rows.pairs[:, 0] > now - RECENT_S) & (kinds <= RSSI)
     found: list[tuple[float, Moved]] = []
     suspected = False
@@ -93,7 +95,8 @@ def moved_nodes(problem: Problem, solved: Solved) -> tuple[list[Moved], bool]:
             judged = solved.rests or together in ALL_KINDS
             better = _better(problem, solved, node, [mine[first:] for first in starts]) if judged else None
             if better is None:
-                suspected = True
+                # Walls disagree with places all the time: not for them is a window solved again sooner.
+                suspected = suspected or bool(_disagreeing(usual[mine]))
                 continue
             seen, place = better
             # What drew the node off its place may be the newest readings, and what disagrees all the others.

@@ -7,11 +7,13 @@ import numpy as np
 from estimator.fusion import physics
 from estimator.fusion.ledger import BEARING, RANGE, RSSI
 from estimator.fusion.noise import LearnedNoise
+from estimator.fusion.pairs import UNTOLD_POWER
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import wrap
+from estimator.smoothing.chosen import choose, kept
 from estimator.smoothing.encounters import candidates, near_dbm
-from estimator.smoothing.ends import UNIT, Ends, choose, kept, nodes_of, place_ends
+from estimator.smoothing.ends import UNIT, Ends, nodes_of, place_ends
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals
 
@@ -145,7 +147,7 @@ class Rows:
             factor[mine], shared[mine] = learned.factor, learned.shared
             if mine.any():
                 self.noise[mine, 0] = learned.outliers(
-                    float(NOISES[RSSI if name.startswith("rssi ") else RANGE][0])
+                    float(NOISES[RSSI if name.startswith(UNTOLD_POWER) else RANGE][0])
                 )
         m = len(self.pairs)
         stays = np.zeros(len(self.nominal))

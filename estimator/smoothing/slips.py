@@ -17,6 +17,7 @@ from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.walks import Motion
 
 Doubts = dict[int, Array]
+"""V of the steps of each walk that has a unit, by the walk's place in the window."""
 
 SLIP_M = physics.SLIP_M
 APART_S = 30.0
@@ -79,8 +80,8 @@ def unsure(motion: Motion, found: Array, ahead: Array, walk: int, first: int) ->
     return covariance
 
 
-def unsure_of(problem: Problem, solved: Solved, found: Array, ahead: Array) -> Doubts:
-    """V of the steps of each walk that has a unit, by the walk's place in the window.
+def doubts_of(problem: Problem, solved: Solved, found: Array, ahead: Array) -> Doubts:
+    """How unsure the smoothed disturbances of all units are.
 
     Args:
         problem: of a window.
@@ -142,7 +143,7 @@ def find_slips(problem: Problem, solved: Solved, doubts: Doubts) -> list[Slip]:
     Args:
         problem: of a window.
         solved: its solution.
-        doubts: see `unsure_of`.
+        doubts: see `doubts_of`.
     """
     slips = []
     for i, doubt in doubts.items():

@@ -12,7 +12,7 @@ from typing import Self
 import msgspec
 
 from estimator.estimate import Notice
-from estimator.fusion.order import end_of, place_of, tick_of
+from estimator.fusion.order import end_of_tick, place_of, tick_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import fold_tick, names_of
 from estimator.measurements import AnyReading
@@ -63,7 +63,7 @@ class Lag:
         self.too_late = 0
         self.received = 0
         self._ticks: list[int] = []
-        self._entries: dict[int, list[AnyReading]] = {}
+        self._readings: dict[int, list[AnyReading]] = {}
         self._checkpoints: list[tuple[int, FusionState]] = [(-1, state)]
         self._folded = -1
         self._notices: dict[int, list[Notice]] = {}
@@ -76,7 +76,7 @@ class Lag:
         lag = cls(lag_s, states[0])
         lag.newest_t, lag.too_late, lag.received = record.newest_t, record.too_late, record.received
         lag._ticks = [tick for tick, _ in record.readings]
-        lag._entries = {tick: list(readings) for tick, readings in record.readings}
+        lag._readings = {tick: list(readings) for tick, readings in record.readings}
         lag._checkpoints = list(zip(record.checkpoints, states, strict=True))
         lag._folded = record.checkpoints[-1]
         lag._notices, lag._given, lag._loose = record.notices, record.given, record.loose
@@ -95,7 +95,7 @@ class Lag:
             self.newest_t,
             self.too_late,
             self.received,
-            [(tick, list(self._entries[tick])) for tick in self._ticks],
+            [(tick, list(self._readings[tick])) for tick in self._ticks],
             [tick for tick, _ in checkpoints],
             self._notices,
             self._given,
@@ -114,10 +114,10 @@ class Lag:
                 continue
             self.newest_t = reading.t if self.newest_t is None else max(self.newest_t, reading.t)
             tick = tick_of(reading.t)
-            if tick not in self._entries:
-                self._entries[tick] = []
+            if tick not in self._readings:
+                self._readings[tick] = []
                 insort(self._ticks, tick)
-            self._entries[tick].append(reading)
+            self._readings[tick].append(reading)
             if tick <= self._folded:
                 self._roll_back(tick)
         for node, missed in late.items():
@@ -135,9 +135,9 @@ class Lag:
         for tick in self._ticks[first:]:
             before = self._checkpoints[-1][1]
             after = before.copy()
-            in_order = sorted(self._entries[tick], key=place_of)
-            fold_tick(after, end_of(tick), in_order)
-            keep_up(after, end_of(tick))
+            in_order = sorted(self._readings[tick], key=place_of)
+            fold_tick(after, end_of_tick(tick), in_order)
+            keep_up(after, end_of_tick(tick))
             self._notices[tick] = list(after.notices)
             self._checkpoints.append((tick, after))
             self._folded = tick
@@ -147,10 +147,10 @@ class Lag:
 
     def _thin(self, newest: int) -> None:
         """Leave checkpoints out as they age; the two newest always stay."""
-        now, before = end_of(newest), (0.0, 0.0)
+        now, before = end_of_tick(newest), (0.0, 0.0)
         thinned: list[tuple[int, FusionState]] = []
         for i, (tick, state) in enumerate(self._checkpoints):
-            end = end_of(tick)
+            end = end_of_tick(tick)
             _, spacing = SPACING_S[bisect_left(SPACING_S, (now - end, 0.0))]
             if spacing == 0.0 or i >= len(self._checkpoints) - 2:
                 thinned += self._checkpoints[i:]
@@ -174,7 +174,7 @@ class Lag:
         del self._checkpoints[:base]
         done = bisect_left(self._ticks, self._checkpoints[0][0] + 1)
         for tick in self._ticks[:done]:
-            del self._entries[tick]
+            del self._readings[tick]
             self._loose.extend(self._fresh(tick))
             self._notices.pop(tick, None)
             self._given.pop(tick, None)

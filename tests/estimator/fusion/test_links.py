@@ -33,6 +33,17 @@ def test_a_link_is_the_same_in_either_direction_and_keeps_its_row_as_the_table_g
     assert links.table[:40, ERROR].tolist() == list(range(40))
 
 
+def test_a_node_that_lies_elsewhere_has_other_errors_on_its_links_and_on_no_others() -> None:
+    links = Links()
+    for a, b in (("b1", "ff"), ("b1", "b2"), ("b2", "ff")):
+        links.number("uwb", a, b)
+    for link in links.table:
+        follow(link, 5.0, 0.0)
+    links.renew("b1")
+    assert links.table[:, ALIKE].tolist() == [0.0, 0.0, 1.0]
+    assert links.number("uwb", "ff", "b1") == 0
+
+
 def test_a_copy_shares_nothing_that_changes() -> None:
     links = Links()
     links.number("uwb", "a", "b")

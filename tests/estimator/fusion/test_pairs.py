@@ -28,8 +28,8 @@ def crew() -> FusionState:
     introduce(state, Node(t=0.0, node="crumb", role="breadcrumb", position_m=(5.0, 0.0, 0.0)))
     introduce(state, Node(t=0.0, node="up", role="breadcrumb", position_m=(5.0, 0.0, 4.0)))
     introduce(state, Node(t=0.0, node="lost", role="breadcrumb"))
-    for name, role in (("ff", "responder"), ("uav", "uav")):
-        introduce(state, Node(t=0.0, node=name, role=role, position_m=(0.0, 0.0, 0.0)))  # type: ignore[arg-type]
+    introduce(state, Node(t=0.0, node="ff", role="responder", position_m=(0.0, 0.0, 0.0)))
+    introduce(state, Node(t=0.0, node="uav", role="uav", position_m=(0.0, 0.0, 0.0)))
     attach_unit(state, state.nodes["ff"], None)
     trail = ((T - 2.0, 0.0, 0.0, 0.0), (T, 2.0, 0.0, 0.5))
     state.nodes["ff"] = replace(state.nodes["ff"], pose_t=T, trail=trail, unit_heading_rad=0.3, way_m=7.0)

@@ -14,7 +14,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.position import Position
 from estimator.smoothing import learn, walks
-from estimator.smoothing.slips import unsure_of
+from estimator.smoothing.slips import doubts_of
 from estimator.smoothing.solve import Solved
 from tests.estimator.smoothing.windows import entered, problem_of, unlikelihood
 
@@ -61,7 +61,7 @@ def learn_once(state: FusionState, most: float = 0.3) -> Solved:
     solved = problem.solve(problem.layout.start())
     solved.chain.solve()
     found, ahead, _ = solved.chain.covariances()
-    learn.learn_walks(state, problem, solved, unsure_of(problem, solved, found, ahead), most)
+    learn.learn_walks(state, problem, solved, doubts_of(problem, solved, found, ahead), most)
     return solved
 
 

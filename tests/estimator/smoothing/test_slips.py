@@ -11,7 +11,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.slips import Slip, admit, find_slips, gains, unsure, unsure_of
+from estimator.smoothing.slips import Slip, admit, doubts_of, find_slips, gains, unsure
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.smoothing.windows import entered, fused, problem_of, unlikelihood
 
@@ -59,7 +59,7 @@ def slips_of(state: FusionState) -> list[Slip]:
     solved = problem.solve(problem.layout.start())
     solved.chain.solve()
     found, ahead, _ = solved.chain.covariances()
-    return find_slips(problem, solved, unsure_of(problem, solved, found, ahead))
+    return find_slips(problem, solved, doubts_of(problem, solved, found, ahead))
 
 
 def said(readings: list[AnyReading]) -> tuple[list[str], list[float]]:
