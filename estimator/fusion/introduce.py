@@ -116,7 +116,7 @@ def attach_unit(state: FusionState, node: NodeState, unit_heading_rad: float | N
     """
     state.graph.delete_nodes([node.velocity])
     turn = initial_turn(node.heading_rad, unit_heading_rad)
-    sigma = (turn_sigma(node), physics.BIAS_SIGMA_RADPS, physics.SCALE_SIGMA)
+    sigma = (turn_sigma(node), state.bias_sigma_radps(node), physics.SCALE_SIGMA)
     state.graph.add_node(node.unit, (turn, 0.0, 0.0), sigma)
     uav = float(node.role == "uav")
     nothing = (0.0,) * 6

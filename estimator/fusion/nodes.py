@@ -6,6 +6,7 @@ from typing import Literal
 import msgspec
 
 from estimator.estimate import Covariance6, Vector3
+from estimator.fusion.gyros import UNTOLD, Told
 from estimator.graph.variable import Variable
 from estimator.measurements.node import Role
 
@@ -37,6 +38,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
         way_m: length of its way so far.
         pressure_t: epoch of its newest fused pressure.
         turned: its unit's frame may be turned by any angle: every window is tried with several.
+        bias_told: what readings say of its unit's gyro bias without its prior.
         walk_factors: learned variances of its unit over the assumed ones: of displacements, of its heading.
     """
 
@@ -60,6 +62,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     pressure_t: float | None = None
     walk_factors: tuple[float, float] = (1.0, 1.0)
     turned: bool = False
+    bias_told: Told = UNTOLD
 
     @property
     def position(self) -> Variable:

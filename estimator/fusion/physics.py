@@ -30,8 +30,9 @@ HEADING_WALK_RAD_PER_ROOT_M = radians(0.25)
 """A boot turns a little against the unit's frame with every step: a few tenths of a degree."""
 GYRO_WALK_RAD_PER_ROOT_S = radians(0.03)
 """Angle random walk of a consumer MEMS gyro, 0.2 to 2 degrees per root hour, and a trembling foot."""
-BIAS_SIGMA_RADPS = radians(0.3)
-"""Gyro bias after the unit's own calibration at switch-on: 0.1 to 0.5 degrees a second once warm."""
+BIAS_SIGMA_MOST_RADPS = radians(0.5)
+"""Gyro bias after the unit's own calibration at switch-on: nearly nil of a good unit, half a degree a second
+of a cheap one once warm. How far those of a crew differ is anything up to that (`fusion/gyros.py`)."""
 BIAS_WALK_RADPS_PER_ROOT_S = radians(0.001)
 SCALE_SIGMA = 0.02
 SCALE_WALK_PER_ROOT_S = 1e-5

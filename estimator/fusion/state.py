@@ -7,6 +7,7 @@ import numpy as np
 
 from estimator.estimate import Notice, NoticeCode, Vector3
 from estimator.fusion import physics
+from estimator.fusion.gyros import bias_sigma_radps
 from estimator.fusion.ledger import Ledger
 from estimator.fusion.links import Links
 from estimator.fusion.nodes import NodeState
@@ -131,6 +132,10 @@ class FusionState:
             if node.mode == "fixed" and node.place_m is not None:
                 return node.place_m
         return (0.0, 0.0, 0.0)
+
+    def bias_sigma_radps(self, node: NodeState) -> float:
+        """Standard deviation of the prior of the gyro bias of a node's unit (rad/s)."""
+        return bias_sigma_radps(node.bias_told, [other.bias_told for other in self.nodes.values()])
 
     def outliers(self, technology: str) -> float:
         """Share of a ranging technology's readings that are outliers, as far as it is known."""

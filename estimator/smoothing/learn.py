@@ -11,11 +11,12 @@ from msgspec.structs import replace
 from numba import njit
 
 from estimator.fusion.calibration import narrow_sigma, scale_sigma, uncalibrated
+from estimator.fusion.gyros import told_of
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.slips import Doubts, admit, doubts_of, find_slips
 from estimator.smoothing.solve import Problem, Solved
-from estimator.smoothing.walks import Motion
+from estimator.smoothing.walks import STATES, Motion
 
 SPREAD = 1.0
 """Units differ from the usual one by this much in the logarithm of a variance."""
@@ -23,6 +24,8 @@ STEP = 0.3
 SEEN = 0.03
 """Share of a step's own noise that readings usually tell apart: what a score is held against."""
 LEAST, MOST = 0.03, 20.0
+BIAS = 4
+"""Which of a state's numbers is the gyro bias."""
 PARTS = 4
 """Numbers of a state that its noise is learned of: place and heading."""
 
@@ -48,6 +51,7 @@ def learn(state: FusionState, problem: Problem, solved: Solved, step: float = ST
         admit(state, slips)
         state.due = state.due or bool(slips)
     calibrate(state, problem, solved.x, border)
+    learn_biases(state, problem, solved.x, found)
     return found
 
 
@@ -141,3 +145,26 @@ def calibrate(state: FusionState, problem: Problem, x: Array, border: Array) -> 
             state.uncalibrated[name] = told
             # Another prior bends everything: what follows from it is not left for later.
             state.due = state.due or scale_sigma(told, narrow) != sigma
+
+
+def learn_biases(state: FusionState, problem: Problem, x: Array, found: Array) -> None:
+    """Note what the window says of each gyro's bias, as long as its prior is the window's own.
+
+    Args:
+        state: its nodes take it.
+        problem: of the window.
+        x: its solution, flat.
+        found: covariance of each walk at each keyframe, k × walks × 6 × 6.
+    """
+    layout = problem.layout
+    known = set() if problem.prior is None else set(problem.prior.keys)
+    told = {}
+    for i, walk in enumerate(layout.walks):
+        if walk.way is None or ("walk", walk.number) in known:
+            continue
+        node = state.nodes[walk.node.node]
+        at = walk.first * layout.width + STATES * i + BIAS
+        variance = float(found[walk.first, i, BIAS, BIAS])
+        told[node.node] = told_of(state.bias_sigma_radps(walk.node), float(x[at]), variance)
+    for name, one in told.items():
+        state.nodes[name] = replace(state.nodes[name], bias_told=one)

@@ -55,7 +55,8 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
         else:
             unit = rows[rows[:, 2] == 1.0][-1]
             mean += [float(unit[10]), 0.0, 0.0]
-            known_by += [float(unit[11]) ** -2, physics.BIAS_SIGMA_RADPS**-2, physics.SCALE_SIGMA**-2]
+            bias = state.bias_sigma_radps(walk.node)
+            known_by += [float(unit[11]) ** -2, bias**-2, physics.SCALE_SIGMA**-2]
     size = layout.length * layout.width
     for row in state.ledger.table("stands"):
         number = int(row[1])

@@ -116,3 +116,28 @@ def test_steps_follow_the_derivative_of_the_marginal_likelihood(
             assume(state, (there[0], there[1]))
             values.append(unlikelihood(problem_of(state), solved))
         assert score == pytest.approx(-(values[0] - values[1]) / 2e-3, rel=1e-3, abs=1e-3)
+
+
+def test_a_crew_that_stood_still_tells_how_well_the_gyro_of_the_next_one_is_calibrated() -> None:
+    state, seconds = FusionState(), range(1, 61)
+    fold_tick(state, 0.5, [entered(node=f"ff{i}") for i in range(4)])
+    for second in seconds:
+        stood = [
+            Displacement(
+                t=float(second),
+                from_t=second - 1.0,
+                node=f"ff{i}",
+                delta_m=(0.0, 0.0, 0.0),
+                heading_rad=math.radians(bias) * second,
+            )
+            for i, bias in enumerate((0.03, -0.05, 0.04, 0.06))
+        ]
+        fold_tick(state, float(second), stood)
+    before = state.bias_sigma_radps(state.nodes["ff0"])
+    problem = problem_of(state)
+    learn.learn(state, problem, problem.solve(problem.layout.start()))
+    fold_tick(state, 61.0, [entered(node="new")])
+    assert state.bias_sigma_radps(state.nodes["new"]) < 0.5 * before
+    information, product = state.nodes["ff3"].bias_told
+    # A turn that is reported and was none turns the unit's frame back by as much.
+    assert product / information == pytest.approx(-math.radians(0.06), abs=math.radians(0.02))

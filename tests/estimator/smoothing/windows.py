@@ -21,10 +21,10 @@ from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import online_pass
 
 
-def entered(east_m: float = 0.0, north_m: float = 0.0) -> Node:
-    """ff1 enters at a known place, facing where its unit says."""
+def entered(east_m: float = 0.0, north_m: float = 0.0, node: str = "ff1") -> Node:
+    """A responder enters at a known place, facing where its unit says."""
     place = (east_m, north_m, 0.0)
-    return Node(t=0.0, node="ff1", role="responder", position_m=place, sigma_m=0.05, heading_sigma_rad=0.01)
+    return Node(t=0.0, node=node, role="responder", position_m=place, sigma_m=0.05, heading_sigma_rad=0.01)
 
 
 def fused(readings: Sequence[AnyReading]) -> FusionState:
