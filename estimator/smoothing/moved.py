@@ -32,6 +32,8 @@ RECENT_S = 120.0
 READINGS_MIN = 5
 SUSPICION = 6.0
 """How much worse than usual, in log likelihood, readings are together before another place is looked for."""
+DOUBT, NEW_S = 1.5, 30.0
+"""The same of the newest readings before a window is solved again soon."""
 USUAL_COST = 1.0
 LATEST = 3
 """So many later beginnings of a disagreement are looked at as well."""
@@ -89,27 +91,28 @@ def moved_nodes(problem: Problem, solved: Solved) -> tuple[list[Moved], bool]:
         for together in BY_KIND if solved.rests else (*ALL_KINDS, *BY_KIND):
             mine = np.flatnonzero(own & np.isin(kinds, together))
             mine = mine[np.argsort(rows.pairs[mine, 0], kind="stable")]
+            # Walls disagree with places all the time: not for them is a window solved again sooner.
+            newest = mine[rows.pairs[mine, 0] > now - NEW_S]
+            suspected = suspected or bool(_disagreeing(usual[mine]) or _disagreeing(usual[newest], DOUBT))
             starts = _disagreeing(cost[mine])
             if not starts:
                 continue
             judged = solved.rests or together in ALL_KINDS
             better = _better(problem, solved, node, [mine[first:] for first in starts]) if judged else None
             if better is None:
-                # Walls disagree with places all the time: not for them is a window solved again sooner.
-                suspected = suspected or bool(_disagreeing(usual[mine]))
                 continue
             seen, place = better
             # What drew the node off its place may be the newest readings, and what disagrees all the others.
-            newest = _disagreeing(seen.costs(seen.residual_at(place.position_m)))
-            since_t = float(seen.t[newest[0] if newest else 0])
+            still = _disagreeing(seen.costs(seen.residual_at(place.position_m)))
+            since_t = float(seen.t[still[0] if still else 0])
             moved = Moved(node.node, since_t, int((rows.pairs[own, 0] >= since_t).sum()))
             if RANGE not in together and _contradicted(problem, solved, node, place.position_m, since_t):
                 suspected = True
                 continue
-            found.append((place.gain, moved))
+            found.append((place.far_m, moved))
             break
     if solved.rests and found:
-        # One that lies elsewhere makes its neighbours seem to: they are asked again without it.
+        # One that lies elsewhere makes its neighbours seem to, but less far: they are asked again without it.
         return [max(found, key=itemgetter(0))[1]], suspected or len(found) > 1
     return [moved for _, moved in found], suspected
 
@@ -126,7 +129,7 @@ def _costs(residual: Array, sigma: Array, noise: Array, ranged: Flags, alike: Ar
     return np.where(ranged & (residual > 0.0), cost / np.sqrt(alike), cost)
 
 
-def _disagreeing(cost: Array) -> list[int]:
+def _disagreeing(cost: Array, least: float = SUSPICION) -> list[int]:
     """From where on readings, in order of epoch, may disagree with a place by their costs.
 
     Where they do most of all in front, then the latest ones at which they begin to: an outlier from before
@@ -137,9 +140,9 @@ def _disagreeing(cost: Array) -> list[int]:
     last = len(cost) - READINGS_MIN + 1
     from_here = np.cumsum((cost - USUAL_COST)[::-1])[::-1][:last]
     bad = cost > USUAL_COST
-    begins = bad[:last] & ~np.concatenate([[False], bad[: last - 1]]) & (from_here >= SUSPICION)
+    begins = bad[:last] & ~np.concatenate([[False], bad[: last - 1]]) & (from_here >= least)
     first = int(np.argmax(from_here))
-    if from_here[first] < SUSPICION:
+    if from_here[first] < least:
         return []
     return [first, *(i for i in np.flatnonzero(begins)[-LATEST:].tolist() if i != first)]
 
@@ -207,9 +210,16 @@ def _seen(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> 
 
 
 class _Place(NamedTuple):
-    """Where readings put a node, 3 (m), and how much better they fit there, in log likelihood."""
+    """Where readings put a node.
+
+    Attributes:
+        position_m: the place, 3 (m).
+        far_m: how far it is from where the node was thought to be (m).
+        gain: how much better they fit there, in log likelihood.
+    """
 
     position_m: Array
+    far_m: float
     gain: float
 
 
@@ -221,9 +231,9 @@ def _elsewhere(seen: _Seen) -> _Place | None:
     best = modes[0]
     before = float(seen.costs(seen.residual).sum())
     after = float(seen.costs(seen.residual_at(best.position_m)).sum())
-    far = float(np.hypot(*(best.position_m - seen.place_m)[:2])) > max(FAR_M, 2.0 * best.sigma_m)
-    clear = far and before - after > GAIN and after < len(seen.t)
-    return _Place(best.position_m, before - after) if clear else None
+    far_m = float(np.hypot(*(best.position_m - seen.place_m)[:2]))
+    clear = far_m > max(FAR_M, 2.0 * best.sigma_m) and before - after > GAIN and after < len(seen.t)
+    return _Place(best.position_m, far_m, before - after) if clear else None
 
 
 def _better(

@@ -75,6 +75,8 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
     if refresh(state, solved_t) and state.due:
         state.due = False
         refresh(state, t)
+        # What was bent is rarely straight after one solution.
+        state.suspected = True
 
 
 def refresh(state: FusionState, solved_t: float) -> bool:
