@@ -13,6 +13,7 @@ from estimator.fusion.introduce import attach_unit, begin_at_base, waits_for_ran
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.physics import NOISES
 from estimator.fusion.rows import Single
+from estimator.fusion.standing import stand_on
 from estimator.fusion.state import FusionState
 from estimator.fusion.way import Mark
 from estimator.measurements.displacement import Displacement, move
@@ -38,7 +39,7 @@ class Increment(NamedTuple):
         delta_m: displacement in the unit's frame (m).
         duration_s: time that it took since the unit's last epoch (s).
         noise: variances that it adds.
-        turn: the gyro bias that it shows, if the unit stood still (ZARU).
+        turn: the gyro bias that is told by a standstill, if one has ended or lasted long (ZARU).
         too_fast: nobody moves so far in its time.
     """
 
@@ -172,7 +173,12 @@ def increment_of(node: NodeState, reading: Displacement) -> Increment | None:
     if too_fast:
         across, up = across + length**2, up + length**2
     still = own > 0.0 and length < physics.STILL_MPS * own and start <= node.pose_t
-    stood, turn = _standing(node, reading, duration) if still else ((), None)
+    stood, told = None, None
+    if not still and node.still is not None:
+        told = node.still.bias()
+    elif still and reading.heading_rad is not None:
+        stood, told = stand_on(node.still, reading.t, reading.heading_rad)
+    turn = None if told is None else Single(node.unit, 1, told.value, told.sigma, physics.TURN_NOISE)
     after = replace(
         node,
         t=max(node.t, reading.t),
@@ -206,37 +212,6 @@ def _walk_noise(sigma_m: float | None, length: float, duration: float) -> Noise:
     bias = physics.BIAS_WALK_RADPS_PER_ROOT_S**2 * duration
     scale = physics.SCALE_WALK_PER_ROOT_S**2 * duration
     return position, position, position, heading, bias, scale
-
-
-def _standing(
-    node: NodeState, reading: Displacement, duration: float
-) -> tuple[tuple[tuple[float, float], ...], Single | None]:
-    """ZARU (estimation.md, point 2): the true heading stays, so what the unit turns meanwhile is −β Δt.
-
-    Reported headings are noisy, and their noise is not told: β is the slope of a line through those of some
-    seconds, and what they scatter about it says how good it is.
-
-    Returns:
-        Epochs and headings of this standing that are not used yet, and the bias if they have just been used.
-    """
-    if reading.heading_rad is None:
-        return (), None
-    last = node.still[-1][1] if node.still else reading.heading_rad
-    turned = (reading.heading_rad - last + np.pi) % (2.0 * np.pi) - np.pi
-    if abs(turned) > physics.STILL_TURN_RADPS * max(duration, 1.0):
-        return ((reading.t, reading.heading_rad),), None
-    still = (*node.still, (reading.t, last + float(turned)))
-    lasted = reading.t - still[0][0]
-    if len(still) < physics.STILL_READINGS or lasted < physics.STILL_S:
-        return still, None
-    t, heading = np.array(still).T
-    t = t - t.mean()
-    spread = float(t @ t)
-    slope = float(t @ heading) / spread
-    scatter = heading - heading.mean() - slope * t
-    variance = float(scatter @ scatter) / (len(still) - 4) / spread
-    sigma = float(np.sqrt(variance + physics.GYRO_WALK_RAD_PER_ROOT_S**2 / lasted))
-    return still[-1:], Single(node.unit, 1, -slope, sigma, physics.TURN_NOISE)
 
 
 def _advance_units(state: FusionState, steps: Sequence[Step]) -> None:

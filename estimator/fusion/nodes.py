@@ -7,6 +7,7 @@ import msgspec
 
 from estimator.estimate import Covariance6, Vector3
 from estimator.fusion.gyros import UNTOLD, Told
+from estimator.fusion.standing import Standing
 from estimator.graph.variable import Variable
 from estimator.measurements.node import Role
 
@@ -34,7 +35,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
         unit_heading_rad: newest heading that its unit reported, in the unit's frame.
         speed_mps: horizontal speed by its newest displacement.
         trail: epochs, and displacements summed up to them in the unit's frame: newest seconds only.
-        still: epochs and reported headings since it stands still, as far as they are not used yet.
+        still: headings that its unit has reported since it stands still.
         way_m: length of its way so far.
         pressure_t: epoch of its newest fused pressure.
         turned: its unit's frame may be turned by any angle: every window is tried with several.
@@ -57,7 +58,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     unit_heading_rad: float | None = None
     speed_mps: float | None = None
     trail: tuple[tuple[float, float, float, float], ...] = ()
-    still: tuple[tuple[float, float], ...] = ()
+    still: Standing | None = None
     way_m: float = 0.0
     pressure_t: float | None = None
     walk_factors: tuple[float, float] = (1.0, 1.0)

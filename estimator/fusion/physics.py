@@ -47,8 +47,12 @@ TURNS = 8
 STILL_MPS = 0.03
 STILL_TURN_RADPS = radians(3.0)
 """Slower than both, a unit stands still, and what it reports as turn is gyro bias (ZARU)."""
-STILL_S = 5.0
+STILL_S, STILL_LONG_S = 5.0, 30.0
+"""So long a standstill lasts that tells a bias, at least, and at most before it has told one and goes on."""
 STILL_READINGS = 6
+STILL_JITTER_RAD, STILL_JITTER_READINGS = 0.01, 4.0
+"""Half a degree of noise in a reported heading, before its own scatter has told; and as many readings that
+is worth."""
 FASTEST_MPS = 10.0
 GAP_MPS = 1.0
 SILENT_M_PER_ROOT_S = 1.0
