@@ -29,8 +29,13 @@ class Chosen(NamedTuple):
     up_sigma_m: float
 
 
-def decide(state: FusionState) -> None:
-    """Try undecided nodes that have been seen anew, and begin those whose position is decided."""
+def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None:
+    """Try undecided nodes that have been seen anew, and begin those whose position is decided.
+
+    Args:
+        state: the fusion, changed in place.
+        sightings_s: how old sightings of a standing node may be (s).
+    """
     covariance: Array | None = None
     for name, seen in list(state.sightings.items()):
         node = state.nodes[name]
@@ -42,7 +47,7 @@ def decide(state: FusionState) -> None:
             continue
         state.tried[name] = seen
         moving = node.role in MOVING_ROLES
-        kept_s = physics.MOVING_SIGHTINGS_S if moving else physics.SIGHTINGS_S
+        kept_s = physics.MOVING_SIGHTINGS_S if moving else sightings_s
         state.ledger.close()
         sightings = of_node(state, node, state.newest_t - kept_s)
         if sightings is None or len(sightings.t) < physics.SIGHTINGS_MIN:

@@ -34,6 +34,7 @@ def tracks(
     size = layout.length * layout.width
     stands = layout.state.ledger.table("stands")
     drops = {int(row[1]): float(row[0]) for row in layout.state.ledger.table("drops")}
+    lay = _lay(layout, drops)
     for row in stands:
         number, name = int(row[1]), layout.state.owners[int(row[1])]
         start = layout.stands[number]
@@ -41,10 +42,13 @@ def tracks(
         covariance = upper_triangle(border[start : start + 3, start : start + 3])
         first, last = lifetimes[name]
         since = max(drops.get(number, first), first) if name in found or number in drops else first
+        came_t, left_t = lay.get(number, (-math.inf, math.inf))
+        since = max(since, came_t)
         points = [p for p in found.get(name, []) if p.t < since]
         points += [
             TrackPoint(t=float(t), position_m=place, covariance_m2=covariance)
-            for t in range(math.ceil(since), math.floor(last) + 1)
+            for t in range(math.ceil(min(since, last + 1.0)), math.floor(last) + 1)
+            if t < left_t
         ]
         found[name] = points
     for node in layout.state.nodes.values():
@@ -55,6 +59,27 @@ def tracks(
                 for t in range(math.ceil(first), math.floor(last) + 1)
             ]
     return {name: points for name, points in found.items() if points}
+
+
+def _lay(layout: Layout, drops: Mapping[int, float]) -> dict[int, tuple[float, float]]:
+    """From when to when a node that was moved or dropped again lay where each of its numbers tells (s).
+
+    Args:
+        layout: of the window.
+        drops: epochs of drops, by number (s).
+    """
+    pairs, owners = layout.state.ledger.table("pairs"), layout.state.owners
+    found: dict[int, tuple[float, float]] = {}
+    last_of: dict[str, int] = {}
+    for number, name in enumerate(owners):
+        if name in last_of:
+            own = pairs[(pairs[:, 2] == number) | (pairs[:, 3] == number), 0]
+            moved_t = drops.get(number, float(own.min()) if len(own) else math.inf)
+            before = last_of[name]
+            found[before] = found.get(before, (-math.inf, math.inf))[0], moved_t
+            found[number] = moved_t, math.inf
+        last_of[name] = number
+    return found
 
 
 def _walked(

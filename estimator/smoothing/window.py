@@ -13,6 +13,8 @@ from estimator.fusion import physics
 from estimator.fusion.beginnings import decide
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
+from estimator.smoothing.branch import branch
+from estimator.smoothing.changed import changed_links
 from estimator.smoothing.extent import (
     LONGEST_S,
     SHORTEST_S,
@@ -25,7 +27,7 @@ from estimator.smoothing.extent import (
 )
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.learn import learn
-from estimator.smoothing.moved import changed_links, moved_nodes, renumber
+from estimator.smoothing.moved import moved_nodes
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.settle import keep_poses, settle
 from estimator.smoothing.solve import Problem, Solved
@@ -174,26 +176,14 @@ def _best(problem: Problem, x: Array) -> Solved:
 
 
 def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
-    """Tell of nodes that lie elsewhere and of links that have changed.
-
-    A node that was moved begins anew with what was measured to it since: shown where it lies only once that
-    is decided, for from a straight way two places explain the same ranges.
-    """
+    """Tell of links that have changed, and of nodes that lie elsewhere, which begin anew."""
     for link in changed_links(problem):
         pair = sorted((link.a, link.b))
         text = f"the link between {pair[0]} and {pair[1]} changed by {link.change_db:+.0f} dB for good"
         state.say("link_changed", link.t, pair[0], text, once=f"link {pair[0]} {pair[1]}")
     moves, state.suspected = moved_nodes(problem, solved)
     for moved in moves:
-        node = state.nodes[moved.name]
-        number = state.number(moved.name)
-        pairs = state.ledger.table("pairs")
-        state.ledger.replace("pairs", renumber(pairs, node.index, number, moved.since_t))
-        state.graph.delete_nodes([node.position])
-        state.nodes[moved.name] = replace(node, mode="undecided", index=number)
-        state.sightings[moved.name] = moved.readings
-        text = f"{moved.name} lies elsewhere than it did: it was kicked or carried"
-        state.say("node_moved", state.newest_t, moved.name, text)
+        branch(state, moved)
         state.due = True
     decide(state)
 

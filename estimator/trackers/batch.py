@@ -9,17 +9,22 @@ from collections.abc import Sequence
 
 from estimator.estimate import TrackPoint
 from estimator.evidence import Advice, Evidence
+from estimator.fusion.beginnings import decide
 from estimator.fusion.ledger import Ledger
 from estimator.fusion.order import place_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import flush, fold_tick, keep_poses, names_of
 from estimator.measurements import AnyReading
 from estimator.smoothing.advice import advise
+from estimator.smoothing.branch import branch
 from estimator.smoothing.evidence import explain
 from estimator.smoothing.extent import spacing_s as usual_s
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.learn import learn
+from estimator.smoothing.moved import Moved, moved_nodes
 from estimator.smoothing.rows import Rows
+from estimator.smoothing.settle import keep_poses as keep_solved
+from estimator.smoothing.settle import settle
 from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.tracks import tracks
 from estimator.smoothing.window import keep_up
@@ -37,6 +42,8 @@ TICK_S = 2.0
 ones a node moves too far for the noise that is learned on the way."""
 RARER = 32.0
 """The first pass only finds where to start: its window is solved this many times more rarely."""
+MOVES = 20
+"""So many nodes at most are found elsewhere: each asks for another solution."""
 LARGEST = 60_000_000
 """Numbers that the chain may hold: beyond it keyframes are set farther apart."""
 
@@ -107,15 +114,37 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
         problem = Problem(Layout(state, since_t, spacing), rows, None)
         solved = problem.solve(solved.x, iterations=1)
         learn(state, problem, solved, most)
+    problem = _problem(state, since_t, spacing)
+    solved = problem.solve(solved.x)
+    for _ in range(MOVES):
+        moves, _ = moved_nodes(problem, solved, math.inf)
+        if not moves:
+            break
+        _begin_elsewhere(state, problem, solved, moves)
+        problem = _problem(state, since_t, spacing)
+        solved = problem.solve(problem.layout.start(), SLACKS_M)
+    return problem, solved
+
+
+def _problem(state: FusionState, since_t: float, spacing: float) -> Problem:
     layout = Layout(state, since_t, spacing)
-    problem = Problem(layout, _rows(layout), None)
-    return problem, problem.solve(solved.x)
+    return Problem(layout, _rows(layout), None)
 
 
 def _rows(layout: Layout) -> Rows:
     rows = Rows(layout, -math.inf)
     rows.learn(layout.state.noise)
     return rows
+
+
+def _begin_elsewhere(state: FusionState, problem: Problem, solved: Solved, moves: Sequence[Moved]) -> None:
+    """Nodes that were moved begin anew, beside the others as they are in the solution."""
+    layout = problem.layout
+    settle(state, layout, solved, solved.chain.remainder(layout.length - 1).matrix)
+    keep_solved(state, layout, solved.x)
+    for moved in moves:
+        branch(state, moved)
+    decide(state, math.inf)
 
 
 def spacing_s(state: FusionState, since_t: float, until_t: float) -> float:

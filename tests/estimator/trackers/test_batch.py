@@ -4,6 +4,7 @@ import math
 import random
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -13,7 +14,7 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop
 from estimator.measurements.node import Node
 from estimator.measurements.position import Position
-from estimator.simulate import paper_a
+from estimator.simulate import paper_a, scenario
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.arbitrary import readings
@@ -89,3 +90,25 @@ def test_paper_a_scenario_smoothed_is_better_than_live_and_honest() -> None:
     assert np.mean([e.mean_percent for e in live]) < 0.55
     assert np.mean([e.mean_percent for e in smoothed]) < 0.20
     assert math.isfinite(sum(e.nees for e in smoothed))
+
+
+@pytest.mark.parametrize("seed", [1, 3])
+def test_the_smoothed_view_shows_a_kicked_breadcrumb_where_it_lay_and_where_it_lies_since(seed: int) -> None:
+    shown = scenario("kicked-breadcrumb", seed)
+    tracks = BatchSmoother().smooth(list(shown.readings))
+    track, beside = ({p.t: np.array(p.position_m) for p in tracks[name]} for name in ("b3", "b2"))
+    for t in (150.0, 380.0):
+        told = track[t] - beside[t]
+        true = shown.truth["b3"].at(np.array([t]))[0] - shown.truth["b2"].at(np.array([t]))[0]
+        # The whole map may be turned: who is followed is known to a tenth of a radian at the start.
+        assert abs(np.hypot(*told[:2]) - np.hypot(*true[:2])) < 0.5
+
+
+def test_the_smoothed_view_finds_what_the_first_pass_had_no_window_to_see() -> None:
+    """The office's kick falls between two solutions of the first pass."""
+    shown = scenario("office-fire", 10)
+    kicked = next(n for n, t in shown.truth.items() if "-B" in n and np.ptp(t.position_m[:, 0]) > 1.0)
+    track = {p.t: np.array(p.position_m) for p in BatchSmoother().smooth(list(shown.readings))[kicked]}
+    for t in (400.0, 1100.0):
+        off_m = np.hypot(*(track[t] - shown.truth[kicked].at(np.array([t]))[0])[:2])
+        assert off_m < 1.0
