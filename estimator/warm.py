@@ -7,6 +7,7 @@ from estimator.fusion.free import free_motion
 from estimator.fusion.modes import Sought, find_modes
 from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.rows import FIELDS, ONE
+from estimator.fusion.silence import wandered_m2
 from estimator.fusion.update import tally
 from estimator.fusion.way import End, offset
 from estimator.graph.dense import factorise, inverse
@@ -96,6 +97,7 @@ def _warm_filter() -> None:
     graph.add_measurements(rows, np.ones((1, 3)), np.ones(1), np.zeros(1))
     inverse(factorise(graph.information))
     move(np.zeros((1, 6)), np.zeros((1, 3)), np.ones(1))
+    wandered_m2(1.0)
     free_motion("responder", 1.0)
     table = np.full((1, FIELDS), 0.5)
     table[0, :2] = ONE, 0.0

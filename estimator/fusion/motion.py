@@ -13,6 +13,7 @@ from estimator.fusion.introduce import attach_unit, begin_at_base, waits_for_ran
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.physics import NOISES
 from estimator.fusion.rows import Single
+from estimator.fusion.silence import wandered_m2
 from estimator.fusion.standing import stand_on
 from estimator.fusion.state import FusionState
 from estimator.fusion.way import Mark
@@ -227,8 +228,8 @@ def _advance_units(state: FusionState, steps: Sequence[Step]) -> None:
 def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
     """Units have not reported up to an epoch at which something else is to be held against their position.
 
-    Their bearers may have stood or walked; a random walk of 1 m per root second covers both. A displacement
-    that comes later counts for the part of its time that is left.
+    Their bearers may have stood or walked (`silence.wandered_m2`). A displacement that comes later counts for
+    the part of its time that is left.
 
     Args:
         state: the fusion.
@@ -239,7 +240,8 @@ def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
     nodes = [state.nodes[name] for name in until]
     noise = np.zeros((len(nodes), 3, 3))
     for i, (node, t) in enumerate(zip(nodes, until.values(), strict=True)):
-        wander = physics.SILENT_M_PER_ROOT_S**2 * min(t - node.pose_t, LONGEST_S)
+        since_t = node.pose_t if node.unit_t is None else node.unit_t
+        wander = wandered_m2(min(t - since_t, LONGEST_S)) - wandered_m2(min(node.pose_t - since_t, LONGEST_S))
         across, up = wander, 0.1 * wander
         noise[i, 0, 0], noise[i, 1, 1], noise[i, 2, 2] = across, across, up
         step = (0.0, 0.0, 0.0, across, up, 0.0, 0.0, 0.0, 1.0)

@@ -55,8 +55,9 @@ STILL_JITTER_RAD, STILL_JITTER_READINGS = 0.01, 4.0
 is worth."""
 FASTEST_MPS = 10.0
 GAP_MPS = 1.0
-SILENT_M_PER_ROOT_S = 1.0
-"""In a time that a unit's reports leave out (`from_t` after its last one), its bearer may walk so fast."""
+SILENT_SPEED_MPS, SILENT_MEMORY_S = 0.7, 1.0
+"""While a unit reports nothing, its bearer walks about with so much along each horizontal axis: after some
+seconds a random walk of 1 m per root second."""
 
 # Nodes without PDR: a velocity that is forgotten with time (Singer's model, for velocity).
 SPEED_SIGMA_MPS: dict[str, tuple[float, float]] = {"responder": (1.0, 0.2), "uav": (5.0, 2.0)}

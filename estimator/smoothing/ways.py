@@ -5,12 +5,13 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion import physics
+from estimator.fusion.silence import wandered_m2
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 
 LONGEST_S = 600.0
 """Noise stops growing with the time between two reports there: nobody is followed over longer silences."""
+BRIDGED_M_PER_ROOT_S = 1.0
 LONG_STEP_S = 4.0
 """Nobody's way over a longer time is a straight line."""
 SUMS = 12
@@ -52,7 +53,7 @@ class Way:
         span = after - before
         inside = (span > LONG_STEP_S) & (t > before) & (t < after)
         return np.where(
-            inside, physics.SILENT_M_PER_ROOT_S**2 * (t - before) * (after - t) / np.maximum(span, 1e-9), 0.0
+            inside, BRIDGED_M_PER_ROOT_S**2 * (t - before) * (after - t) / np.maximum(span, 1e-9), 0.0
         )
 
     def between(self, since: Array, until: Array) -> Array:
@@ -143,8 +144,8 @@ def sum_between(
         found[c] -= before[c]
     for c in range(3):
         found[3 + c] -= found[c] * (since - begin_t)
-    silent = min(max(until - max(since, marks[-1]), 0.0), LONGEST_S)
-    wander = physics.SILENT_M_PER_ROOT_S**2 * silent
+    before_s, after_s = max(since - marks[-1], 0.0), max(until - marks[-1], 0.0)
+    wander = wandered_m2(min(after_s, LONGEST_S)) - wandered_m2(min(before_s, LONGEST_S))
     found[6] += wander
     found[7] += 0.1 * wander
 

@@ -1,0 +1,58 @@
+"""How far somebody may have gone meanwhile."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from estimator.fusion import physics
+from estimator.fusion.silence import wandered_m2
+from estimator.fusion.state import FusionState
+from estimator.fusion.tick import fold_tick
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.node import Node
+from estimator.measurements.position import Position
+
+
+@pytest.mark.parametrize("silent_s", [0.2, 1.0, 5.0])
+def test_a_way_varies_as_that_of_walkers_who_change_their_speed_at_random(silent_s: float) -> None:
+    chance = np.random.default_rng(1)
+    walkers, step_s = 20_000, silent_s / 200.0
+    keeps = math.exp(-step_s / physics.SILENT_MEMORY_S)
+    speed = chance.normal(0.0, physics.SILENT_SPEED_MPS, walkers)
+    way = np.zeros(walkers)
+    for _ in range(200):
+        before = speed
+        kick = chance.normal(0.0, physics.SILENT_SPEED_MPS * math.sqrt(1.0 - keeps**2), walkers)
+        speed = keeps * speed + kick
+        way += 0.5 * (before + speed) * step_s
+    assert wandered_m2(silent_s) == pytest.approx(float(way.var()), rel=0.04)
+
+
+@given(st.floats(0.001, 0.05))
+def test_nobody_is_anywhere_at_once(silent_s: float) -> None:
+    assert math.sqrt(wandered_m2(silent_s)) == pytest.approx(physics.SILENT_SPEED_MPS * silent_s, rel=0.02)
+
+
+def test_after_minutes_it_is_a_random_walk_of_a_metre_per_root_second() -> None:
+    assert wandered_m2(300.0) - wandered_m2(200.0) == pytest.approx(100.0, rel=0.03)
+
+
+def silent_sigma_m(fixes_s: list[float]) -> float:
+    """How unsure the place of a walker is whose last displacement is from 1 s, after vague fixes (m)."""
+    state = FusionState()
+    place = (0.0, 0.0, 0.0)
+    fold_tick(state, 0.5, [Node(t=0.0, node="ff1", role="responder", position_m=place, sigma_m=0.05)])
+    fold_tick(state, 1.0, [Displacement(t=1.0, from_t=0.0, node="ff1", delta_m=(0.5, 0.0, 0.0))])
+    for t in fixes_s:
+        fix = Position(t=t, node="ff1", position_m=place, sigma_m=(1e4, 1e4, 1e4))
+        fold_tick(state, t + physics.PENDING_S + 1.0, [fix])
+    rows = state.graph.rows(state.nodes["ff1"].position)
+    return float(np.sqrt(state.graph.covariance()[rows, rows][0, 0]))
+
+
+def test_a_long_silence_is_as_long_however_often_something_is_held_against_it() -> None:
+    assert silent_sigma_m([9.0]) == pytest.approx(silent_sigma_m([2.0, 3.0, 4.5, 6.0, 9.0]), rel=1e-3)
+    assert silent_sigma_m([9.0]) == pytest.approx(math.sqrt(wandered_m2(8.0)), rel=0.05)
