@@ -97,7 +97,7 @@ def _warm_filter() -> None:
     graph.add_measurements(rows, np.ones((1, 3)), np.ones(1), np.zeros(1))
     inverse(factorise(graph.information))
     move(np.zeros((1, 6)), np.zeros((1, 3)), np.ones(1))
-    wandered_m2(1.0)
+    wandered_m2(1.0, 0.0)
     free_motion("responder", 1.0)
     table = np.full((1, FIELDS), 0.5)
     table[0, :2] = ONE, 0.0

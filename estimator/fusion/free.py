@@ -7,8 +7,8 @@ from msgspec.structs import replace
 from numba import njit
 
 from estimator.fusion import physics
-from estimator.fusion.motion import LONGEST_S
 from estimator.fusion.nodes import NodeState
+from estimator.fusion.silence import LONGEST_S
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 

@@ -3,7 +3,8 @@
 One unit's gyro turns by 0.03 degrees a second, another's by ten times that; the units of a crew are mostly
 of one kind. What the readings alone say of each bias, d with variance v, is held against several spreads:
 p ∝ Π N(d; 0, v + σ²), uniform in σ beforehand (Gelman 2006, "Prior distributions for variance parameters in
-hierarchical models"). Of each bias the prior is the one Gaussian under which its mean is that of them all.
+hierarchical models"). Of each bias the prior is the one Gaussian under which its mean is that of them all, or
+a wider one where they leave it less sure: of a bad unit in a good crew they say two things.
 """
 
 import math
@@ -17,6 +18,8 @@ SPREADS = ((np.arange(10) + 0.5) / 10.0 * physics.BIAS_SIGMA_MOST_RADPS) ** 2
 """Variances that stand for all (rad²/s²)."""
 NOTHING = 1e-6
 """Share of the information on a bias below which readings have told nothing of it."""
+MOST_KEPT = 0.999
+"""A prior that keeps more of what readings say of a bias is none."""
 UNTOLD = (0.0, 0.0)
 Told = tuple[float, float]
 """What readings say of a bias without its prior: information (s²/rad²), and that times the bias (s/rad)."""
@@ -29,7 +32,12 @@ def told_of(sigma: float, estimate: float, variance: float) -> Told:
         sigma: standard deviation of the prior, of mean 0, that the estimate was made with (rad/s).
         estimate: of the bias (rad/s).
         variance: of the estimate, the prior included (rad²/s²).
+
+    Returns:
+        That, or nothing where the estimate is no better than the prior.
     """
+    if not variance > 0.0:
+        return UNTOLD
     information = 1.0 / variance - 1.0 / sigma**2
     return UNTOLD if information * variance < NOTHING else (information, estimate / variance)
 
@@ -40,6 +48,9 @@ def bias_sigma_radps(own: Told, told: Iterable[Told]) -> float:
     Args:
         own: what is told of it.
         told: what is told of all units', its own included.
+
+    Returns:
+        It, at least what all spreads together give to the mean and to the variance of the bias.
     """
     logarithm = np.zeros(len(SPREADS))
     for information, product in told:
@@ -48,8 +59,12 @@ def bias_sigma_radps(own: Told, told: Iterable[Told]) -> float:
             logarithm -= 0.5 * (np.log(spread) + (product / information) ** 2 / spread)
     weight = np.exp(logarithm - logarithm.max())
     weight /= weight.sum()
-    if own[0] == 0.0:
+    if not own[0] > 0.0:
         return math.sqrt(float(weight @ SPREADS))
     alone = 1.0 / own[0]
-    drawn = float(weight @ (alone / (SPREADS + alone)))
-    return math.sqrt(alone * (1.0 - drawn) / drawn)
+    share = SPREADS / (SPREADS + alone)
+    mean = float(weight @ share)
+    # The variance that all spreads together leave, over that of the readings alone.
+    left = mean + (own[1] ** 2 / own[0]) * float(weight @ (share - mean) ** 2)
+    kept = min(max(mean, left), MOST_KEPT)
+    return math.sqrt(alone * kept / (1.0 - kept))

@@ -173,8 +173,10 @@ def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float)
         return False
     if node.mode == "static":
         state.graph.delete_nodes([node.position])
-        node = replace(node, mode="undecided", index=state.number(name))
         state.say("node_moved", t, name, f"{name} was dropped anew by {by.node}")
+    if node.mode == "static" or name in state.sightings:
+        # What was measured to it before was measured to another place, or to a hand that carried it.
+        node = replace(node, mode="undecided", index=state.number(name))
     wide = (NO_PRIOR_SIGMA_M,) * 3
     place(state, node, t, where_m, wide)
     state.ledger.add("drops", t, node.index, by.index)

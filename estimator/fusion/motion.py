@@ -13,7 +13,7 @@ from estimator.fusion.introduce import attach_unit, begin_at_base, waits_for_ran
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.physics import NOISES
 from estimator.fusion.rows import Single
-from estimator.fusion.silence import wandered_m2
+from estimator.fusion.silence import LONGEST_S, wandered_m2
 from estimator.fusion.standing import stand_on
 from estimator.fusion.state import FusionState
 from estimator.fusion.way import Mark
@@ -23,9 +23,6 @@ from estimator.measurements.node import MOVING_ROLES
 TRAIL_S = 4.0
 FIRST_DURATION_S = 1.0
 NOISE_FLOOR = (1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12)
-LONGEST_S = 600.0
-"""Noise stops growing with the time between two reports there: nobody is followed over longer silences."""
-
 AXES = np.arange(6)
 Noise = tuple[float, float, float, float, float, float]
 """Variances of east, north, up (m²), ψ (rad²), β (rad²/s²) and s."""
@@ -175,10 +172,12 @@ def increment_of(node: NodeState, reading: Displacement) -> Increment | None:
         across, up = across + length**2, up + length**2
     still = own > 0.0 and length < physics.STILL_MPS * own and start <= node.pose_t
     stood, told = None, None
-    if not still and node.still is not None:
-        told = node.still.bias()
-    elif still and reading.heading_rad is not None:
+    if still and reading.heading_rad is not None:
         stood, told = stand_on(node.still, reading.t, reading.heading_rad)
+    elif still:
+        stood = node.still
+    elif node.still is not None:
+        told = node.still.bias()
     turn = None if told is None else Single(node.unit, 1, told.value, told.sigma, physics.TURN_NOISE)
     after = replace(
         node,
@@ -240,8 +239,8 @@ def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
     nodes = [state.nodes[name] for name in until]
     noise = np.zeros((len(nodes), 3, 3))
     for i, (node, t) in enumerate(zip(nodes, until.values(), strict=True)):
-        since_t = node.pose_t if node.unit_t is None else node.unit_t
-        wander = wandered_m2(min(t - since_t, LONGEST_S)) - wandered_m2(min(node.pose_t - since_t, LONGEST_S))
+        since_s = math.inf if node.unit_t is None else node.pose_t - node.unit_t
+        wander = wandered_m2(t - node.pose_t, since_s)
         across, up = wander, 0.1 * wander
         noise[i, 0, 0], noise[i, 1, 1], noise[i, 2, 2] = across, across, up
         step = (0.0, 0.0, 0.0, across, up, 0.0, 0.0, 0.0, 1.0)

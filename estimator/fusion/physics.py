@@ -49,12 +49,15 @@ STILL_TURN_RADPS = radians(3.0)
 """Slower than both, a unit stands still, and what it reports as turn is gyro bias (ZARU)."""
 STILL_S, STILL_LONG_S = 5.0, 30.0
 """So long a standstill lasts that tells a bias, at least, and at most before it has told one and goes on."""
+STILL_SILENT_S = 10.0
+"""Who has reported nothing for longer may have turned meanwhile."""
 STILL_READINGS = 6
 STILL_JITTER_RAD, STILL_JITTER_READINGS = 0.01, 4.0
 """Half a degree of noise in a reported heading, before its own scatter has told; and as many readings that
 is worth."""
 FASTEST_MPS = 10.0
 GAP_MPS = 1.0
+"""In a time that a unit's reports leave out (`from_t` after its last one), its bearer may walk so fast."""
 SILENT_SPEED_MPS, SILENT_MEMORY_S = 0.7, 1.0
 """While a unit reports nothing, its bearer walks about with so much along each horizontal axis: after some
 seconds a random walk of 1 m per root second."""

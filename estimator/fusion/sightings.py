@@ -8,6 +8,7 @@ from estimator.fusion.ledger import RANGE, RSSI
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
+from estimator.measurements.node import MOVING_ROLES
 
 DRIFT = 0.02
 """Share of a way by which the places along it are unsure against each other, by dead reckoning."""
@@ -75,10 +76,10 @@ def of_node(state: FusionState, node: NodeState, since_t: float) -> Sightings | 
 def _places(
     state: FusionState, other: NodeState, number: int, t: Array, since_t: float
 ) -> tuple[Array, Array] | None:
-    """Where another node was at epochs `t`, and how unsure that is against where it is now."""
-    if other.index != number or not other.decided:
+    """Where another node was at epochs `t`, and how unsure that is against where it is, or was at last."""
+    if other.index != number or not (other.decided or other.place_m is not None):
         return None
-    if not other.moving:
+    if other.role not in MOVING_ROLES:
         return np.tile(state.place(other), (len(t), 1)), np.zeros(len(t))
     poses = state.ledger.table("poses")
     poses = poses[(poses[:, 1] == number) & (poses[:, 0] >= since_t - 10.0)]
@@ -86,7 +87,7 @@ def _places(
     track = np.concatenate([poses[:, [0, 3, 4, 5]], now[None]])
     track = track[np.argsort(track[:, 0], kind="stable")]
     places = np.column_stack([np.interp(t, track[:, 0], track[:, axis]) for axis in (1, 2, 3)])
-    if other.mode == "free":
+    if other.unit_t is None:
         return places, np.full(len(t), FREE_M)
     steps = np.linalg.norm(np.diff(track[:, 1:], axis=0), axis=1)
     walked = np.concatenate([[0.0], np.cumsum(steps)])

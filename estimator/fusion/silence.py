@@ -6,17 +6,23 @@ from numba import njit
 
 from estimator.fusion import physics
 
+LONGEST_S = 600.0
+"""No more is added at once: nobody is followed over longer silences."""
+LEAST_M2 = 1e-9
+
 
 @njit(cache=True)
-def wandered_m2(silent_s: float) -> float:
-    """Variance of a way along each horizontal axis (m²): a speed that is forgotten with time.
+def wandered_m2(span_s: float, since_s: float) -> float:
+    """Variance that a way gains along each horizontal axis in a part of a silence (m²).
 
-    Nobody is anywhere at once: in a tenth of a second it grows with the square of the time, and after a few
-    seconds as that of a random walk (Ornstein and Uhlenbeck 1930, of the position).
+    The speed is forgotten with time. Nobody is anywhere at once: in a tenth of a second the way grows with
+    the square of the time, and after a few seconds as that of a random walk (Ornstein and Uhlenbeck 1930).
 
     Args:
-        silent_s: time since the last report (s).
+        span_s: how long the part lasts (s).
+        since_s: how long the silence has lasted before it (s); infinite: nobody knows.
     """
     memory = physics.SILENT_MEMORY_S
-    left = silent_s - memory * (1.0 - math.exp(-silent_s / memory))
-    return 2.0 * physics.SILENT_SPEED_MPS**2 * memory * left
+    span = min(max(span_s, 0.0), LONGEST_S)
+    started = memory * math.exp(-since_s / memory) * -math.expm1(-span / memory)
+    return max(2.0 * physics.SILENT_SPEED_MPS**2 * memory * (span - started), LEAST_M2)

@@ -63,17 +63,19 @@ def stand_on(before: Standing | None, t: float, heading_rad: float) -> tuple[Sta
         heading_rad: the heading.
 
     Returns:
-        What is not used yet, and the bias where it is told now: the standstill was long, or ended by a turn.
+        What is not used yet, and the bias where it is told now: the standstill was long, or ended by a turn
+        or by a silence, in which the bearer may have turned.
     """
     if before is None:
         return Standing(t, t, heading_rad), None
     step = (heading_rad - before.heading_rad + np.pi) % (2.0 * np.pi) - np.pi
-    if abs(step) > physics.STILL_TURN_RADPS * max(t - before.t, 1.0):
+    since_s = t - before.t
+    if since_s > physics.STILL_SILENT_S or abs(step) > physics.STILL_TURN_RADPS * max(since_s, 1.0):
         return Standing(t, t, heading_rad), before.bias()
     n, t1, h1, t2, th, h2 = before.sums
     after, turned = t - before.since_t, before.turned_rad + step
     sums = n + 1.0, t1 + after, h1 + turned, t2 + after * after, th + after * turned, h2 + turned * turned
     standing = Standing(before.since_t, t, heading_rad, turned, sums)
-    if after < physics.STILL_LONG_S:
+    if after < physics.STILL_LONG_S or sums[0] < physics.STILL_READINGS:
         return standing, None
     return Standing(t, t, heading_rad), standing.bias()

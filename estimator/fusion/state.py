@@ -39,7 +39,8 @@ class FusionState:
         newest_t: end of the newest tick, Unix seconds.
         bent_m: how far updates have bent the window since it was last solved (m).
         due: the window is to be solved again at once.
-        suspected: a standing node may have been moved: its newest readings disagree with its place.
+        suspected: the window is to be solved again soon: the newest readings disagree with a standing node's
+            place, or what was just found has bent what follows.
         begun_t: end of the first tick with a node in it.
         refreshed_t: end of the tick at which the window was last solved.
         window_t: epoch of the window's first keyframe.

@@ -1,4 +1,4 @@
-"""How noisy each PDR unit is, as its own way through the window tells.
+"""What a solved window tells of units and technologies: how noisy, how well calibrated.
 
 The score of the marginal likelihood by a noise parameter is what the smoothed steps say of it (Fisher's
 identity): ½ Σ [E(w wᵀ) − Q] : Q⁻¹ Q_i Q⁻¹, with E(w wᵀ) = ŵ ŵᵀ + V. A few damped steps along it, one with

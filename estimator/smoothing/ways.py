@@ -9,11 +9,8 @@ from estimator.fusion.silence import wandered_m2
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 
-LONGEST_S = 600.0
-"""Noise stops growing with the time between two reports there: nobody is followed over longer silences."""
-BRIDGED_M_PER_ROOT_S = 1.0
-LONG_STEP_S = 4.0
-"""Nobody's way over a longer time is a straight line."""
+LONG_STEP_S, BRIDGED_M_PER_ROOT_S = 4.0, 1.0
+"""Nobody's way over a longer time is a straight line, but a random walk between its ends."""
 SUMS = 12
 """Displacement 3, its first moment 3, variances 5, length."""
 LAID = 8
@@ -57,7 +54,7 @@ class Way:
         )
 
     def between(self, since: Array, until: Array) -> Array:
-        """What lies between epochs, m × 12, moments from `since` on; silence adds a random walk."""
+        """What lies between epochs, m × 12, moments from `since` on; silence adds what it lets wander."""
         since, until = np.ascontiguousarray(since), np.ascontiguousarray(until)
         return np.asarray(sums_between(self._begin, self._marks, self._sums, since, until))
 
@@ -128,7 +125,7 @@ def sum_between(
 ) -> None:
     """What a way's displacements say of it between two epochs, 12, moments from `since` on.
 
-    Silence adds a random walk.
+    Silence after the last displacement adds a random walk (`silence.wandered_m2`).
 
     Args:
         begin_t: epoch at which it begins (s).
@@ -144,8 +141,8 @@ def sum_between(
         found[c] -= before[c]
     for c in range(3):
         found[3 + c] -= found[c] * (since - begin_t)
-    before_s, after_s = max(since - marks[-1], 0.0), max(until - marks[-1], 0.0)
-    wander = wandered_m2(min(after_s, LONGEST_S)) - wandered_m2(min(before_s, LONGEST_S))
+    silent_s = until - max(since, marks[-1])
+    wander = wandered_m2(silent_s, np.inf) if silent_s > 0.0 else 0.0
     found[6] += wander
     found[7] += 0.1 * wander
 

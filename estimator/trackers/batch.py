@@ -120,7 +120,12 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
         moves, _ = moved_nodes(problem, solved, math.inf)
         if not moves:
             break
-        _begin_elsewhere(state, problem, solved, moves)
+        try:
+            _begin_elsewhere(state, problem, solved, moves)
+        except ValueError:
+            # Where the filter's matrix cannot be had from it, the solution is as good as it was.
+            solved = problem.solve(solved.x)
+            break
         problem = _problem(state, since_t, spacing)
         solved = problem.solve(problem.layout.start(), SLACKS_M)
     return problem, solved

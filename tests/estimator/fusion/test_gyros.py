@@ -32,33 +32,40 @@ def test_a_crew_of_good_gyros_makes_the_next_ones_bias_better_known_and_a_bad_cr
     assert bias_sigma_radps(UNTOLD, bad) > 1.2 * USUAL_RADPS
 
 
+def test_a_bad_unit_in_a_good_crew_is_not_taken_for_a_good_one() -> None:
+    crew = [said(0.04, 0.02), said(-0.06, 0.02), said(0.05, 0.02)]
+    bad, usual = said(1.0, 0.3), said(0.05, 0.3)
+    assert bias_sigma_radps(bad, [*crew, bad]) > 2.0 * bias_sigma_radps(usual, [*crew, usual])
+
+
 def test_what_says_little_changes_little() -> None:
     vague = [said(0.3, 3.0)] * 3
     assert bias_sigma_radps(vague[0], vague) == pytest.approx(USUAL_RADPS, rel=0.03)
 
 
 @given(
-    bias=st.floats(-0.6, 0.6), sigma=st.floats(0.01, 2.0), others=st.lists(st.floats(-0.6, 0.6), max_size=3)
+    bias=st.floats(0.01, 1.0), sigma=st.floats(0.01, 2.0), others=st.lists(st.floats(-0.6, 0.6), max_size=3)
 )
-def test_a_bias_is_drawn_to_nil_as_by_all_spreads_together(
+def test_a_bias_is_left_as_far_and_as_unsure_as_all_spreads_together_leave_it(
     bias: float, sigma: float, others: list[float]
 ) -> None:
-    """The posterior mean by integration over bias and spread."""
-    own = said(bias, sigma)
-    told = [own, *(said(other, 0.05) for other in others)]
-    prior = bias_sigma_radps(own, told)
+    """Its posterior by integration over bias and spread."""
+    own, other_m2 = said(bias, sigma), math.radians(0.05) ** 2
+    prior = bias_sigma_radps(own, [own, *(said(other, 0.05) for other in others)])
     alone, d = math.radians(sigma) ** 2, math.radians(bias)
-    mean = d * prior**2 / (prior**2 + alone)
     grid = np.linspace(-math.radians(6.0), math.radians(6.0), 40_001)
     joint = np.zeros(len(grid))
     for spread in SPREADS:
+        known = spread + other_m2
         weight = math.prod(
-            math.exp(-0.5 * math.radians(other) ** 2 / (spread + math.radians(0.05) ** 2))
-            / math.sqrt(spread + math.radians(0.05) ** 2)
-            for other in others
+            math.exp(-0.5 * math.radians(other) ** 2 / known) / math.sqrt(known) for other in others
         )
         joint += weight / math.sqrt(spread) * np.exp(-0.5 * (grid**2 / spread + (grid - d) ** 2 / alone))
-    assert mean == pytest.approx(float((grid * joint).sum() / joint.sum()), rel=1e-3, abs=1e-6)
+    total = joint.sum()
+    mean = float((grid * joint).sum() / total)
+    variance = float(((grid - mean) ** 2 * joint).sum() / total)
+    share = prior**2 / (prior**2 + alone)
+    assert share == pytest.approx(min(max(mean / d, variance / alone), 0.999), rel=2e-3, abs=1e-4)
 
 
 @given(bias=st.floats(-0.6, 0.6), sigma=st.floats(0.01, 1.0), prior=st.floats(0.02, 1.0))
@@ -72,3 +79,5 @@ def test_the_answer_does_not_depend_on_the_prior_that_the_estimate_was_made_with
 
 def test_an_estimate_that_is_the_prior_tells_nothing() -> None:
     assert told_of(0.005, 0.0, 0.005**2) == UNTOLD
+    assert told_of(0.005, 0.0, 0.0) == UNTOLD
+    assert told_of(0.005, math.nan, math.nan) == UNTOLD

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.fusion import physics
+from estimator.fusion.introduce import attach_unit
 from estimator.fusion.silence import wandered_m2
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import fold_tick
@@ -28,16 +29,25 @@ def test_a_way_varies_as_that_of_walkers_who_change_their_speed_at_random(silent
         kick = chance.normal(0.0, physics.SILENT_SPEED_MPS * math.sqrt(1.0 - keeps**2), walkers)
         speed = keeps * speed + kick
         way += 0.5 * (before + speed) * step_s
-    assert wandered_m2(silent_s) == pytest.approx(float(way.var()), rel=0.04)
+    assert wandered_m2(silent_s, 0.0) == pytest.approx(float(way.var()), rel=0.04)
 
 
 @given(st.floats(0.001, 0.05))
 def test_nobody_is_anywhere_at_once(silent_s: float) -> None:
-    assert math.sqrt(wandered_m2(silent_s)) == pytest.approx(physics.SILENT_SPEED_MPS * silent_s, rel=0.02)
+    assert math.sqrt(wandered_m2(silent_s, 0.0)) == pytest.approx(
+        physics.SILENT_SPEED_MPS * silent_s, rel=0.02
+    )
 
 
 def test_after_minutes_it_is_a_random_walk_of_a_metre_per_root_second() -> None:
-    assert wandered_m2(300.0) - wandered_m2(200.0) == pytest.approx(100.0, rel=0.03)
+    assert wandered_m2(100.0, 200.0) == pytest.approx(100.0, rel=0.03)
+    assert wandered_m2(100.0, math.inf) == pytest.approx(100.0, rel=0.03)
+
+
+@given(st.floats(0.01, 5.0), st.floats(0.01, 5.0))
+def test_the_parts_of_a_silence_add_up(first_s: float, second_s: float) -> None:
+    parts = wandered_m2(first_s, 0.0) + wandered_m2(second_s, first_s)
+    assert parts == pytest.approx(wandered_m2(first_s + second_s, 0.0), rel=1e-6, abs=1e-8)
 
 
 def silent_sigma_m(fixes_s: list[float]) -> float:
@@ -55,4 +65,21 @@ def silent_sigma_m(fixes_s: list[float]) -> float:
 
 def test_a_long_silence_is_as_long_however_often_something_is_held_against_it() -> None:
     assert silent_sigma_m([9.0]) == pytest.approx(silent_sigma_m([2.0, 3.0, 4.5, 6.0, 9.0]), rel=1e-3)
-    assert silent_sigma_m([9.0]) == pytest.approx(math.sqrt(wandered_m2(8.0)), rel=0.05)
+    assert silent_sigma_m([9.0]) == pytest.approx(math.sqrt(wandered_m2(8.0, 0.0)), rel=0.05)
+
+
+def test_whoever_is_silent_for_a_quarter_of_an_hour_grows_less_sure_all_the_time() -> None:
+    early, late = (silent_sigma_m([float(t) for t in range(2, end, 3)]) for end in (300, 900))
+    assert late == pytest.approx(early * math.sqrt(3.0), rel=0.05)
+
+
+def test_a_unit_whose_first_displacement_came_too_late_is_followed_as_any_silent_one() -> None:
+    state = FusionState()
+    place = (0.0, 0.0, 0.0)
+    fold_tick(state, 0.5, [Node(t=0.0, node="ff1", role="responder", position_m=place, sigma_m=0.05)])
+    attach_unit(state, state.nodes["ff1"], None)
+    for tenth in range(1, 100):
+        fix = Position(t=0.1 * tenth, node="ff1", position_m=place, sigma_m=(1e4, 1e4, 1e4))
+        fold_tick(state, 0.1 * tenth + physics.PENDING_S + 1.0, [fix])
+    rows = state.graph.rows(state.nodes["ff1"].position)
+    assert float(np.sqrt(state.graph.covariance()[rows, rows][0, 0])) > 2.5

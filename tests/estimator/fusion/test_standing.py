@@ -76,6 +76,18 @@ def test_who_turns_round_begins_a_standstill_anew_and_nothing_of_the_turn_is_tak
     assert left.value == pytest.approx(0.001)
 
 
+def test_a_unit_that_reports_seldom_tells_its_bias_as_well() -> None:
+    _, told = stood([-0.008 * i for i in range(12)], period_s=8.0)
+    assert [bias.value for bias in told] == pytest.approx([0.001, 0.001], rel=0.01)
+
+
+def test_whoever_may_have_turned_in_a_silence_begins_a_standstill_anew() -> None:
+    standing, bias = stand_on(stood([-0.001 * i for i in range(28)])[0], 200.0, 1.5)
+    assert bias is not None
+    assert bias.value == pytest.approx(0.001)
+    assert standing.since_t == 200.0
+
+
 def test_a_standstill_that_ends_tells_the_units_bias_when_its_bearer_walks_on() -> None:
     state = FusionState()
     state.ledger = Ledger(complete=True)

@@ -49,7 +49,7 @@ def off_m(shown: Scenario, track: list[NodeEstimate], name: str) -> dict[float, 
     }
 
 
-@pytest.mark.parametrize("seed", [*range(6), 16, 17])
+@pytest.mark.parametrize("seed", [*range(6), 17])
 def test_a_kicked_breadcrumb_is_noticed_within_30_s_of_coming_near_again(seed: int) -> None:
     shown = scenario("kicked-breadcrumb", seed)
     notices, _ = followed(shown, 280.0)

@@ -14,6 +14,8 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop
 from estimator.measurements.node import Node
 from estimator.measurements.position import Position
+from estimator.measurements.range import Range
+from estimator.measurements.retire import Retire
 from estimator.simulate import paper_a, scenario
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
@@ -71,6 +73,21 @@ def test_a_breadcrumb_dropped_again_elsewhere_has_a_place_for_each_drop() -> Non
     assert abs(east[20.0] - 20.0) < 0.2
 
 
+def test_what_was_measured_to_a_breadcrumb_in_its_bearers_hand_says_nothing_of_where_it_was_dropped() -> None:
+    walk: list[AnyReading] = [Node(t=0.0, node="base", role="base")]
+    walk += [Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.1)]
+    walk += [Node(t=0.0, node="b1", role="breadcrumb")]
+    walk += [Displacement(t=float(k), node="ff1", delta_m=(1.0, 0.0, 0.0)) for k in range(1, 41)]
+    walk += [Range(t=float(k), a="base", b="b1", range_m=float(k), technology="uwb") for k in range(1, 20)]
+    walk += [Drop(t=20.0, node="b1", by="ff1")]
+    walk += [Range(t=float(k), a="base", b="b1", range_m=20.0, technology="uwb") for k in range(21, 41)]
+    place = {p.t: p.position_m for p in BatchSmoother().smooth(walk)["b1"]}
+    assert abs(place[30.0][0] - 20.0) < 0.3
+    tracker = KirchhoffTracker()
+    tracker.fold(walk)
+    assert not [n for n in tracker.take_notices() if n.code == "node_moved"]
+
+
 def test_paper_a_scenario_smoothed_is_better_than_live_and_honest() -> None:
     live, smoothed = [], []
     for seed in range(3):
@@ -92,10 +109,14 @@ def test_paper_a_scenario_smoothed_is_better_than_live_and_honest() -> None:
     assert math.isfinite(sum(e.nees for e in smoothed))
 
 
-@pytest.mark.parametrize("seed", [1, 3])
-def test_the_smoothed_view_shows_a_kicked_breadcrumb_where_it_lay_and_where_it_lies_since(seed: int) -> None:
+@pytest.mark.parametrize("retired", [False, True], ids=["at work", "gone home"])
+@pytest.mark.parametrize("seed", [0, 3])
+def test_the_smoothed_view_shows_a_kicked_breadcrumb_where_it_lay_and_where_it_lies_since(
+    seed: int, retired: bool
+) -> None:
     shown = scenario("kicked-breadcrumb", seed)
-    tracks = BatchSmoother().smooth(list(shown.readings))
+    gone = [Retire(t=439.0, node=name) for name in ("ff1", "ff2") if retired]
+    tracks = BatchSmoother().smooth([*shown.readings, *gone])
     track, beside = ({p.t: np.array(p.position_m) for p in tracks[name]} for name in ("b3", "b2"))
     for t in (150.0, 380.0):
         told = track[t] - beside[t]
