@@ -30,7 +30,9 @@ PARTS = 4
 """Numbers of a state that its noise is learned of: place and heading."""
 
 
-def learn(state: FusionState, problem: Problem, solved: Solved, step: float = STEP) -> Array:
+def learn(
+    state: FusionState, problem: Problem, solved: Solved, step: float = STEP, kinds: bool = True
+) -> Array:
     """Learn from a solved window how noisy each unit is, and which technologies are calibrated.
 
     Args:
@@ -38,6 +40,7 @@ def learn(state: FusionState, problem: Problem, solved: Solved, step: float = ST
         problem: of the window.
         solved: its solution, whose chain is eliminated here.
         step: farthest that the logarithm of a variance moves at once.
+        kinds: technologies are judged as well.
 
     Returns:
         Covariance of each walk at each keyframe, k × walks × 6 × 6.
@@ -50,7 +53,8 @@ def learn(state: FusionState, problem: Problem, solved: Solved, step: float = ST
         slips = find_slips(problem, solved, doubts)
         admit(state, slips)
         state.due = state.due or bool(slips)
-    calibrate(state, problem, solved.x, border)
+    if kinds:
+        calibrate(state, problem, solved.x, border)
     learn_biases(state, problem, solved.x, found)
     return found
 

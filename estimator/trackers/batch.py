@@ -98,6 +98,9 @@ def in_order(readings: Sequence[AnyReading]) -> list[AnyReading]:
 def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     """Solve everything, learning on the way how noisy each unit is.
 
+    Whether a technology is calibrated the first pass has judged. The same walls, met again and again for
+    hours, look like a scale that is surer and surer.
+
     Args:
         state: the fusion after all readings, with a complete ledger.
     """
@@ -109,11 +112,11 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     problem = Problem(layout, rows, None)
     solved = problem.solve(layout.start(), SLACKS_M, resting=LEARNING_RESTING)
     first, *later = LEARNING
-    learn(state, problem, solved, first)
+    learn(state, problem, solved, first, kinds=False)
     for most in later:
         problem = Problem(Layout(state, since_t, spacing), rows, None)
         solved = problem.solve(solved.x, iterations=1)
-        learn(state, problem, solved, most)
+        learn(state, problem, solved, most, kinds=False)
     problem = _problem(state, since_t, spacing)
     solved = problem.solve(solved.x)
     for _ in range(MOVES):

@@ -133,3 +133,15 @@ def test_the_smoothed_view_finds_what_the_first_pass_had_no_window_to_see() -> N
     for t in (400.0, 1100.0):
         off_m = np.hypot(*(track[t] - shown.truth[kicked].at(np.array([t]))[0])[:2])
         assert off_m < 1.0
+
+
+def test_walls_that_are_met_again_for_two_hours_are_not_taken_for_a_scale_of_all_ranges() -> None:
+    shown = scenario("two-hours", 0)
+    found, true, covariance = [], [], []
+    for name, points in BatchSmoother().smooth(list(shown.readings)).items():
+        if name.startswith("ff"):
+            found += [p.position_m for p in points]
+            covariance += [p.covariance_m2 for p in points]
+            true.append(shown.truth[name].at(np.array([p.t for p in points])))
+    said = errors(np.array(found), np.concatenate(true), full_covariance(np.array(covariance)), 1000.0)
+    assert said.nees < 4.0
