@@ -4,7 +4,8 @@ Physics leaves most of them a span. Some were chosen among what is plausible wit
 public sets plaza1, danis and hanyang, and the scenarios of `estimator.simulate`. Accuracy on these is
 therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M`, `SCALE_SIGMA`,
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
-`FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE` and `WALL_M`. M marks what
+`FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE`, `WALL_M`, and that the spread of gyro
+biases is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm. M marks what
 estimation.md reports as measured.
 
 Some stand in compiled functions, which keep the number that they were compiled with: after a change remove
