@@ -1,7 +1,7 @@
-"""Whether a ranging technology is calibrated: its scale nearly nil, or else wide.
+"""What readings alone say of a calibration, and whether a ranging technology is calibrated.
 
-What the readings alone say of the scale, d with variance v, is held against both kinds:
-p ∝ share · N(d; 0, v + σ²). The next solution has the prior of one of them.
+Its scale is nearly nil, or else wide. What the readings alone say of it, d with variance v, is held against
+both kinds: p ∝ share · N(d; 0, v + σ²). The next solution has the prior of one of them.
 """
 
 import math
@@ -9,10 +9,27 @@ import math
 from estimator.fusion import physics
 
 NOTHING = 1e-6
-"""Share of the information on a scale below which readings have told nothing of it."""
+"""Share of the information on a number below which readings have told nothing of it."""
+UNTOLD = (0.0, 0.0)
+Told = tuple[float, float]
+"""What readings say of a number without its prior: information, and that times the number."""
 TRUSTED = 0.25
 """Probability of not being calibrated below which a technology is taken for calibrated. One that is wrongly
 trusted bends everything; one that is wrongly distrusted costs some sharpness."""
+
+
+def told_of(sigma: float, estimate: float, variance: float) -> Told:
+    """What an estimate says of a number without its prior; nothing where it is no better than that.
+
+    Args:
+        sigma: standard deviation of the prior, of mean 0, that the estimate was made with.
+        estimate: of the number.
+        variance: of the estimate, the prior included.
+    """
+    if not variance > 0.0:
+        return UNTOLD
+    information = 1.0 / variance - 1.0 / sigma**2
+    return UNTOLD if information * variance < NOTHING else (information, estimate / variance)
 
 
 def narrow_sigma(outliers: float) -> float:
@@ -51,11 +68,11 @@ def uncalibrated(sigma: float, estimate: float, variance: float, narrow: float) 
         variance: of the estimate, the prior included.
         narrow: standard deviation of the scale of a calibrated technology.
     """
-    told = 1.0 / variance - 1.0 / sigma**2
-    if told * variance < NOTHING:
+    information, product = told_of(sigma, estimate, variance)
+    if not information > 0.0:
         return physics.UNCALIBRATED
-    alone = 1.0 / told
-    said = estimate / variance * alone
+    alone = 1.0 / information
+    said = product * alone
     odds = _logarithm(said, alone + physics.RANGE_SCALE_WIDE**2)
     odds -= _logarithm(said, alone + narrow**2)
     odds += math.log(physics.UNCALIBRATED / (1.0 - physics.UNCALIBRATED))

@@ -13,41 +13,20 @@ from collections.abc import Iterable
 import numpy as np
 
 from estimator.fusion import physics
+from estimator.fusion.calibration import Told
 
 SPREADS = ((np.arange(10) + 0.5) / 10.0 * physics.BIAS_SIGMA_MOST_RADPS) ** 2
 """Variances that stand for all (rad²/s²)."""
-NOTHING = 1e-6
-"""Share of the information on a bias below which readings have told nothing of it."""
 MOST_KEPT = 0.999
 """A prior that keeps more of what readings say of a bias is none."""
-UNTOLD = (0.0, 0.0)
-Told = tuple[float, float]
-"""What readings say of a bias without its prior: information (s²/rad²), and that times the bias (s/rad)."""
-
-
-def told_of(sigma: float, estimate: float, variance: float) -> Told:
-    """What an estimate says of a bias without its prior.
-
-    Args:
-        sigma: standard deviation of the prior, of mean 0, that the estimate was made with (rad/s).
-        estimate: of the bias (rad/s).
-        variance: of the estimate, the prior included (rad²/s²).
-
-    Returns:
-        That, or nothing where the estimate is no better than the prior.
-    """
-    if not variance > 0.0:
-        return UNTOLD
-    information = 1.0 / variance - 1.0 / sigma**2
-    return UNTOLD if information * variance < NOTHING else (information, estimate / variance)
 
 
 def bias_sigma_radps(own: Told, told: Iterable[Told]) -> float:
     """Standard deviation of the prior of a unit's bias (rad/s).
 
     Args:
-        own: what is told of it.
-        told: what is told of all units', its own included.
+        own: what readings alone say of it (s²/rad², s/rad).
+        told: what they say of all units', its own included.
 
     Returns:
         It, at least what all spreads together give to the mean and to the variance of the bias.

@@ -6,7 +6,7 @@ from typing import Literal
 import msgspec
 
 from estimator.estimate import Covariance6, Vector3
-from estimator.fusion.gyros import UNTOLD, Told
+from estimator.fusion.calibration import UNTOLD, Told
 from estimator.fusion.standing import Standing
 from estimator.graph.variable import Variable
 from estimator.measurements.node import Role

@@ -19,6 +19,7 @@ from estimator.smoothing.solve import Problem, Solved
 Flags = NDArray[np.bool_]
 
 READINGS_MIN = 5
+USUAL_COST = 1.0
 GAIN = 10.0
 """How much better the other place must explain them: odds of 1 to 20,000 for one more place."""
 FAR_M = 1.5
@@ -164,5 +165,5 @@ def contradicted(problem: Problem, solved: Solved, node: NodeState, mine: Intege
     """Whether ranges among readings to a node fit another place worse: a fire weakens all its signals."""
     seen = seen_of(problem, solved, node, mine[problem.rows.pairs[mine, 1] == RANGE])
     return seen is not None and bool(
-        seen.costs(seen.residual_at(place_m)).sum() > seen.costs(seen.residual).sum() + 1.0
+        seen.costs(seen.residual_at(place_m)).sum() > seen.costs(seen.residual).sum() + USUAL_COST
     )

@@ -10,8 +10,7 @@ import numpy as np
 from msgspec.structs import replace
 from numba import njit
 
-from estimator.fusion.calibration import narrow_sigma, scale_sigma, uncalibrated
-from estimator.fusion.gyros import told_of
+from estimator.fusion.calibration import narrow_sigma, scale_sigma, told_of, uncalibrated
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.slips import Doubts, admit, doubts_of, find_slips

@@ -13,7 +13,14 @@ from estimator.fusion.ledger import RANGE, RSSI
 from estimator.fusion.modes import CAUCHY
 from estimator.graph.dense import Array
 from estimator.graph.robust import cauchy_cost
-from estimator.smoothing.elsewhere import READINGS_MIN, best_place, changed_t, contradicted, costs_of
+from estimator.smoothing.elsewhere import (
+    READINGS_MIN,
+    USUAL_COST,
+    best_place,
+    changed_t,
+    contradicted,
+    costs_of,
+)
 from estimator.smoothing.solve import Problem, Solved
 
 ALL_KINDS, BY_KIND = ((RANGE, RSSI),), ((RANGE,), (RSSI,))
@@ -25,7 +32,6 @@ SUSPICION = 6.0
 """How much worse than usual, in log likelihood, readings are together before another place is looked for."""
 DOUBT, NEW_S = 1.5, 30.0
 """The same of the newest readings before a window is solved again soon."""
-USUAL_COST = 1.0
 LATEST = 3
 """So many later beginnings of a disagreement are looked at as well."""
 
@@ -75,6 +81,7 @@ def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) ->
             if not (solved.rests or together in ALL_KINDS):
                 continue
             parts = [mine[first:] for first in _disagreeing(cost[mine])]
+            # It may be drawn to its new place already: then what disagrees lies in front.
             parts += [mine[: len(mine) - first] for first in _disagreeing(cost[mine[::-1]])[:1]]
             place = best_place(problem, solved, node, parts)
             if place is None:

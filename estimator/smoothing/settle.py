@@ -58,7 +58,7 @@ def settle(state: FusionState, layout: Layout, solved: Solved, matrix: Array) ->
     state.graph = Kirchhoff.of(order, left, rest, reference)
 
 
-def keep_poses(state: FusionState, layout: Layout, x: Array) -> None:
+def keep_keyframes(state: FusionState, layout: Layout, x: Array) -> None:
     """The solution's keyframes are where the next one starts from."""
     size = layout.length * layout.width
     keyframes = x[:size].reshape(layout.length, layout.width)

@@ -29,7 +29,7 @@ from estimator.smoothing.layout import Layout
 from estimator.smoothing.learn import learn
 from estimator.smoothing.moved import moved_nodes
 from estimator.smoothing.rows import Rows
-from estimator.smoothing.settle import keep_poses, settle
+from estimator.smoothing.settle import keep_keyframes, settle
 from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.walks import STATES
 
@@ -115,7 +115,7 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         text = f"the last minutes could not be solved again, positions go on without: {error}"
         state.say("unsolved", state.newest_t, None, text)
         return False
-    keep_poses(state, layout, solved.x)
+    keep_keyframes(state, layout, solved.x)
     if trimmed is not None:
         state.prior, state.window_t = trimmed
         ledger.forget(state.window_t, ("pairs", "singles", "drops", "poses"))

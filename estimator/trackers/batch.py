@@ -23,8 +23,7 @@ from estimator.smoothing.layout import Layout
 from estimator.smoothing.learn import learn
 from estimator.smoothing.moved import Moved, moved_nodes
 from estimator.smoothing.rows import Rows
-from estimator.smoothing.settle import keep_poses as keep_solved
-from estimator.smoothing.settle import settle
+from estimator.smoothing.settle import keep_keyframes, settle
 from estimator.smoothing.solve import Problem, Solved
 from estimator.smoothing.tracks import tracks
 from estimator.smoothing.window import keep_up
@@ -123,12 +122,7 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
         moves, _ = moved_nodes(problem, solved, math.inf)
         if not moves:
             break
-        try:
-            _begin_elsewhere(state, problem, solved, moves)
-        except ValueError:
-            # Where the filter's matrix cannot be had from it, the solution is as good as it was.
-            solved = problem.solve(solved.x)
-            break
+        _begin_elsewhere(state, problem, solved, moves)
         problem = _problem(state, since_t, spacing)
         solved = problem.solve(problem.layout.start(), SLACKS_M)
     return problem, solved
@@ -149,7 +143,7 @@ def _begin_elsewhere(state: FusionState, problem: Problem, solved: Solved, moves
     """Nodes that were moved begin anew, beside the others as they are in the solution."""
     layout = problem.layout
     settle(state, layout, solved, solved.chain.remainder(layout.length - 1).matrix)
-    keep_solved(state, layout, solved.x)
+    keep_keyframes(state, layout, solved.x)
     for moved in moves:
         branch(state, moved)
     decide(state, math.inf)

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.fusion import physics
-from estimator.fusion.gyros import SPREADS, UNTOLD, Told, bias_sigma_radps, told_of
+from estimator.fusion.calibration import UNTOLD, Told, told_of
+from estimator.fusion.gyros import SPREADS, bias_sigma_radps
 
 USUAL_RADPS = physics.BIAS_SIGMA_MOST_RADPS / math.sqrt(3.0)
 """Standard deviation under a spread that may be anything up to the most."""
