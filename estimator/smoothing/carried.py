@@ -10,29 +10,24 @@ from estimator.graph.kernels import Integers
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.groups import Group
 from estimator.smoothing.layout import Layout
+from estimator.smoothing.turned import across, turn, turn_between
 from estimator.smoothing.walks import STATES
 
 
 class Shared(NamedTuple):
-    """What a prior tells of one group of walks.
+    """What a prior and one group of walks have in common.
 
     Attributes:
         moving: which of the prior's numbers are of its keyframe.
         lasting: which are of its border.
         own: which columns of its keyframe those are.
         rest: which columns of its border.
-        diagonal: the prior's matrix of its keyframe.
-        border: that of its keyframe by its border.
-        corner: that of its border.
     """
 
     moving: Indices
     lasting: Indices
     own: Indices
     rest: Indices
-    diagonal: Array
-    border: Array
-    corner: Array
 
 
 class Carried:
@@ -50,12 +45,15 @@ class Carried:
         self._at = np.concatenate(columns or [np.zeros(0, dtype=np.intp)]).astype(np.intp)
         self._kept = np.flatnonzero(self._at >= 0)
         self._shared: list[Shared] = []
+        self._base_m = np.array(layout.state.base_place()[:2])
+        self._places, self._speeds = _turning(layout, prior, self._at)
 
     def first(self, x: Array) -> Array:
-        """The estimate with the border where the prior was linearised, flat."""
-        first = x.copy()
+        """The estimate with the border where the prior was linearised, turned as the map is now, flat."""
+        first, there = x.copy(), self._prior.reference.copy()
+        there[self._places] = self._base_m + turn(there[self._places] - self._base_m, self._turned_by(x))
         lasting = self._at >= self._size
-        first[self._at[lasting]] = self._prior.reference[lasting]
+        first[self._at[lasting]] = there[lasting]
         return first
 
     def cost(self, x: Array) -> float:
@@ -73,37 +71,60 @@ class Carried:
 
     def add(self, chain: Chain, x: Array) -> None:
         """Add it to the normal equations at an estimate, flat; the chain always has the same groups."""
+        turned_by, matrix = self._turned_by(x), self._prior.matrix.copy()
         vector = self._prior.vector - self._prior.matrix @ self._moved(x)
+        for at in (self._places, self._speeds):
+            vector[at] = turn(vector[at], turned_by)
+            matrix[at] = turn(matrix[at].transpose(0, 2, 1), turned_by).transpose(0, 2, 1)
+            matrix[:, at] = turn(matrix[:, at], turned_by)
         if not self._shared:
             self._shared = [self._shared_with(strand.group) for strand in chain.strands]
-        for strand, shared in zip(chain.strands, self._shared, strict=True):
-            own, rest = shared.own, shared.rest
+        for strand, (moving, lasting, own, rest) in zip(chain.strands, self._shared, strict=True):
             if len(strand.group.walks):
-                strand.diagonal[0][own[:, None], own] += shared.diagonal
-                strand.border[0][own[:, None], rest] += shared.border
-                strand.gradient[0][own] += vector[shared.moving]
+                strand.diagonal[0][own[:, None], own] += matrix[moving[:, None], moving]
+                strand.border[0][own[:, None], rest] += matrix[moving[:, None], lasting]
+                strand.gradient[0][own] += vector[moving]
             else:
-                strand.corner[rest[:, None], rest] += shared.corner
-                strand.corner_gradient[rest] += vector[shared.lasting]
+                strand.corner[rest[:, None], rest] += matrix[lasting[:, None], lasting]
+                strand.corner_gradient[rest] += vector[lasting]
 
     def _shared_with(self, group: Group) -> Shared:
-        matrix = self._prior.matrix
         moving, own = _common(self._at, group.columns)
         lasting, rest = _common(self._at - self._size, group.lasting)
-        return Shared(
-            moving,
-            lasting,
-            own,
-            rest,
-            matrix[np.ix_(moving, moving)],
-            matrix[np.ix_(moving, lasting)],
-            matrix[np.ix_(lasting, lasting)],
-        )
+        return Shared(moving, lasting, own, rest)
+
+    def _turned_by(self, x: Array) -> float:
+        """By how much the map is turned about the base since the prior was linearised (rad)."""
+        was_m = self._prior.reference[self._places] - self._base_m
+        return turn_between(was_m, x[self._at[self._places]] - self._base_m)
 
     def _moved(self, x: Array) -> Array:
+        """What the prior takes for deviations from its reference.
+
+        R(−θ) x − r + θ J r of places: what a turn of the whole map by θ moves is along (J r, 1) only, however
+        large the turn, and of that the prior knows nothing but what was said of headings.
+        """
         moved = np.zeros(len(self._at))
         moved[self._kept] = x[self._at[self._kept]] - self._prior.reference[self._kept]
+        turned_by = self._turned_by(x)
+        for at, middle in ((self._places, self._base_m), (self._speeds, np.zeros(2))):
+            was, now = self._prior.reference[at] - middle, x[self._at[at]] - middle
+            moved[at] = turn(now, -turned_by) - was + turned_by * across(was)
         return moved
+
+
+def _turning(layout: Layout, prior: Prior, columns: Indices) -> tuple[Indices, Indices]:
+    """Which of a prior's numbers are places that are still there, and which velocities: east and north."""
+    units = {walk.number for walk in layout.walks if walk.way is not None}
+    places, speeds, start = [], [], 0
+    for kind, number in prior.keys:
+        lasts = kind in ("walk", "stand") and columns[start] >= 0
+        if lasts:
+            places.append((start, start + 1))
+        if lasts and kind == "walk" and number not in units:
+            speeds.append((start + 3, start + 4))
+        start += STATES if kind == "walk" else 3 if kind == "stand" else 2
+    return np.array(places, dtype=np.intp).reshape(-1, 2), np.array(speeds, dtype=np.intp).reshape(-1, 2)
 
 
 def _columns(layout: Layout, key: Key) -> Indices:

@@ -7,14 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.fusion.ledger import RANGE
-from estimator.fusion.modes import CAUCHY, Sought, find_modes
+from estimator.fusion.modes import CAUCHY, Mode, Sought, find_modes
 from estimator.fusion.nodes import NodeState
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.graph.robust import cauchy_cost, mixture_cost
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
-from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.solved import Solved
 
 Flags = NDArray[np.bool_]
 
@@ -134,6 +135,18 @@ def _elsewhere(seen: Seen) -> Place | None:
     best = modes[0]
     before = float(seen.costs(seen.residual).sum())
     after = float(seen.costs(seen.residual_at(best.position_m)).sum())
+    return clear_place(seen, best, before, after)
+
+
+def clear_place(seen: Seen, best: Mode, before: float, after: float) -> Place | None:
+    """The place of a mode, if it explains readings clearly better than the one that their node has.
+
+    Args:
+        seen: the readings.
+        best: their mode.
+        before: what they cost with their node where it is thought to be, in log likelihood.
+        after: what they cost with it at the mode.
+    """
     far_m = float(np.hypot(*(best.position_m - seen.place_m)[:2]))
     clear = far_m > max(FAR_M, 2.0 * best.sigma_m) and before - after > GAIN and after < len(seen.t)
     return Place(best.position_m, far_m, before - after, seen) if clear else None

@@ -16,7 +16,8 @@ from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.rows import Rows
-from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.solved import Solved
 from estimator.smoothing.walks import STATES
 
 HELD_MAX = 30

@@ -6,7 +6,9 @@ from estimator.fusion.prior import Key, Prior
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Indices
 from estimator.smoothing.layout import technology_key
-from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.solved import Solved
+from estimator.smoothing.turned import turned
 from estimator.smoothing.walks import STATES
 
 SPACING_S = 2.0
@@ -44,7 +46,7 @@ def trim(problem: Problem, solved: Solved) -> tuple[Prior, float] | None:
         return None
     cut = int(np.searchsorted(layout.grid, layout.grid[-1] - longest))
     before = problem.assemble(solved.x, solved.linear, solved.weighted, solved.motions, cut)
-    left = before.remainder(cut)
+    left = turned(before.remainder(cut), layout, problem.first(solved.x), solved.x)
     keys: list[Key] = []
     at: list[Indices] = []
     epochs: dict[int, float] = {}

@@ -14,7 +14,8 @@ from estimator.fusion.calibration import narrow_sigma, scale_sigma, told_of, unc
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.slips import Doubts, admit, doubts_of, find_slips
-from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.solved import Solved
 from estimator.smoothing.walks import STATES, Motion
 
 SPREAD = 1.0
@@ -100,7 +101,8 @@ def noise_scores(motion: Motion, unsure_of: Array) -> Array:
     half = np.empty((PARTS, size))
     for i in range(len(motion.residual)):
         known, noise, off, doubt = motion.information[i], motion.noise[i], motion.residual[i], unsure_of[i]
-        turn, east, north = noise[3, 3], motion.transition[i, 0, 3], motion.transition[i, 1, 3]
+        turn = noise[3, 3]
+        east, north = 2.0 * noise[0, 3] / turn, 2.0 * noise[1, 3] / turn
         by_place, by_turn = part[0], part[1]
         by_turn[0, 0], by_turn[1, 1] = east * east * turn / 3.0, north * north * turn / 3.0
         by_turn[0, 1] = by_turn[1, 0] = east * north * turn / 3.0

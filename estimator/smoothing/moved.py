@@ -13,6 +13,7 @@ from estimator.fusion.ledger import RANGE, RSSI
 from estimator.fusion.modes import CAUCHY
 from estimator.graph.dense import Array
 from estimator.graph.robust import cauchy_cost
+from estimator.smoothing.drawn import drawn_place
 from estimator.smoothing.elsewhere import (
     READINGS_MIN,
     USUAL_COST,
@@ -21,7 +22,8 @@ from estimator.smoothing.elsewhere import (
     contradicted,
     costs_of,
 )
-from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.solved import Solved
 
 ALL_KINDS, BY_KIND = ((RANGE, RSSI),), ((RANGE,), (RSSI,))
 """Kinds of readings that are asked together. Signals from afar say little of a place: among them ranges that
@@ -78,12 +80,15 @@ def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) ->
             # Walls disagree with places all the time: not for them is a window solved again sooner.
             newest = mine[rows.pairs[mine, 0] > now - NEW_S]
             suspected = suspected or bool(_disagreeing(usual[mine]) or _disagreeing(usual[newest], DOUBT))
-            if not (solved.rests or together in ALL_KINDS):
+            asked = solved.rests or together in ALL_KINDS
+            if not asked and together != (RANGE,):
                 continue
             parts = [mine[first:] for first in _disagreeing(cost[mine])]
             # It may be drawn to its new place already: then what disagrees lies in front.
             parts += [mine[: len(mine) - first] for first in _disagreeing(cost[mine[::-1]])[:1]]
-            place = best_place(problem, solved, node, parts)
+            place = best_place(problem, solved, node, parts) if asked else None
+            if place is None and together == (RANGE,) and parts and rows.pairs[parts[0][0], 0] > now - NEW_S:
+                place = drawn_place(problem, solved, node, parts[0])
             if place is None:
                 continue
             since_t = changed_t(problem, solved, node, mine, place)

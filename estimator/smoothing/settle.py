@@ -7,7 +7,7 @@ from estimator.graph.dense import Array, Indices
 from estimator.graph.kirchhoff import Kirchhoff, marginalised
 from estimator.graph.variable import Variable
 from estimator.smoothing.layout import Layout, technology_key
-from estimator.smoothing.solve import Solved
+from estimator.smoothing.solved import Solved
 from estimator.smoothing.walks import STATES
 
 NONE = np.zeros(0, dtype=np.intp)

@@ -13,7 +13,8 @@ from numba import njit
 from estimator.fusion import physics
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
-from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.solved import Solved
 from estimator.smoothing.walks import Motion
 
 Doubts = dict[int, Array]

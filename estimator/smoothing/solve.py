@@ -1,12 +1,14 @@
 """Newton steps over a window: readings, motion and priors at once, robust, until it rests."""
 
-from typing import NamedTuple
+from copy import copy
+from typing import Self
 
 import numpy as np
 
 from estimator.fusion.ledger import RSSI
 from estimator.fusion.prior import Prior
 from estimator.graph.dense import Array
+from estimator.graph.kernels import Integers
 from estimator.graph.robust import Weighted, mixture_cost, weigh
 from estimator.graph.scatter import add_motion
 from estimator.smoothing.bent import add_bends
@@ -16,6 +18,7 @@ from estimator.smoothing.groups import Groups
 from estimator.smoothing.layout import Layout, Walk
 from estimator.smoothing.priors import own_priors
 from estimator.smoothing.rows import Linearised, Rows
+from estimator.smoothing.solved import Solved, There
 from estimator.smoothing.walks import STATES, Free, Motion, free_motions, misfit, reckon, unit_motion
 
 ACCEPTED = 1e-3
@@ -32,37 +35,6 @@ CLOSE = 0.3
 LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e3
 
 
-class Solved(NamedTuple):
-    """A solved window.
-
-    Attributes:
-        x: the estimate, flat: keyframes, then the border.
-        chain: its normal equations at the estimate, not yet solved.
-        linear: its rows at the estimate.
-        weighted: how each row was weighed.
-        motions: the walks' motion there.
-        cost: negative log likelihood up to a constant.
-        rests: the last step promised next to nothing.
-    """
-
-    x: Array
-    chain: Chain
-    linear: Linearised
-    weighted: Weighted
-    motions: list[Motion]
-    cost: float
-    rests: bool
-
-
-class There(NamedTuple):
-    """An estimate that a step may lead to: its rows' residuals, the walks' motion there, and its cost."""
-
-    x: Array
-    residual: Array
-    motions: list[Motion]
-    cost: float
-
-
 class Problem:
     """The least-squares problem of a window.
 
@@ -70,6 +42,7 @@ class Problem:
         layout: its unknowns.
         rows: its readings.
         prior: what is known from before; None: nothing is.
+        left_out: rows that do not count.
     """
 
     def __init__(self, layout: Layout, rows: Rows, prior: Prior | None) -> None:
@@ -81,6 +54,7 @@ class Problem:
         coupled = [rows.columns] if self._carried is None else [rows.columns, self._carried.coupled]
         self._groups = Groups(layout.width, layout.border, coupled)
         self._every = np.arange(len(rows.slab))
+        self.left_out: Integers = self._every[:0]
         self._placed = self._groups.placed(rows.slab, rows.columns)
         self._pairs = [part[: np.searchsorted(part, len(rows.pairs))] for part in self._placed.parts]
         size, width = layout.length * layout.width, max(layout.width, 1)
@@ -95,6 +69,12 @@ class Problem:
         if walk.way is None:
             return durations, free_motions(walk.node.role, durations)
         return durations, walk.way.between(times[:-1], times[1:])
+
+    def without(self, left_out: Integers) -> Self:
+        """The same problem without some of its rows; the rows themselves are shared."""
+        other = copy(self)
+        other.left_out = left_out
+        return other
 
     def motions(self, x: Array) -> list[Motion]:
         """Each walk's motion at an estimate."""
@@ -124,7 +104,9 @@ class Problem:
     def cost(self, x: Array, residual: Array, motions: list[Motion]) -> float:
         """Negative log likelihood up to a constant: mixtures of the readings, motion, priors."""
         rows = self.rows
-        total = float(mixture_cost(residual, rows.sigma, *rows.noise.T).sum())
+        costs = mixture_cost(residual, rows.sigma, *rows.noise.T)
+        costs[self.left_out] = 0.0
+        total = float(costs.sum())
         total += sum(misfit(motion) for motion in motions)
         total += 0.5 * float((self._information * (x[self._at] - self._mean) ** 2).sum())
         if self._carried is not None:
@@ -139,8 +121,12 @@ class Problem:
         """
         return Linearised(self._jacobian(x), self.rows.residual(x))
 
+    def first(self, x: Array) -> Array:
+        """Where rows are linearised at an estimate, flat."""
+        return x if self._carried is None else self._carried.first(x)
+
     def _jacobian(self, x: Array) -> Array:
-        return self.rows.jacobian(x if self._carried is None else self._carried.first(x))
+        return self.rows.jacobian(self.first(x))
 
     def weigh(self, residual: Array, slack_m: float = 0.0) -> Weighted:
         """E-step of the readings' noise."""
@@ -149,7 +135,9 @@ class Problem:
         if slack_m > 0.0:
             powers = self.rows.pairs[:, 1] == RSSI
             predicted[: len(powers)][powers] = (SLACK_DB_PER_M * slack_m) ** 2
-        return weigh(residual, self.rows.sigma, predicted, outliers, shift, spread)
+        weighted = weigh(residual, self.rows.sigma, predicted, outliers, shift, spread)
+        weighted.information[self.left_out] = 0.0
+        return weighted
 
     def assemble(
         self,

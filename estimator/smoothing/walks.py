@@ -132,6 +132,10 @@ def unit_motion(between: Array, durations_s: Array, states: Array) -> Motion:
     order in β Δt however the way turns in between. A heading that walks randomly by variance v along a chord
     of length l moves its end sideways by v l² / 3, correlated with the heading by v l / 2.
 
+    The derivative by the heading is by the way that was gone, J (p' − p), not by the one that was reported:
+    turned as a whole, a way fits as it did. Otherwise each step whose ends do not quite fit would tell of
+    where north is, and in two hours all of them together four times what anybody knows.
+
     Args:
         between: sums of each step, k × 12 (see `Way.between`).
         durations_s: of each step, k.
@@ -158,6 +162,8 @@ def unit_motion(between: Array, durations_s: Array, states: Array) -> Motion:
                 noise[i, r, c] += lever * transition[i, c, 3] * turn / 3.0
             noise[i, r, 3] += lever * 0.5 * turn
             noise[i, 3, r] += lever * 0.5 * turn
+        transition[i, 0, 3] = states[i, 1] - states[i + 1, 1]
+        transition[i, 1, 3] = states[i + 1, 0] - states[i, 0]
     return Motion(transition, noise, residual, inverses(noise))
 
 

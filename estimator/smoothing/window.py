@@ -30,7 +30,9 @@ from estimator.smoothing.learn import learn
 from estimator.smoothing.moved import moved_nodes
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.settle import keep_keyframes, settle
-from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.solved import Solved
+from estimator.smoothing.turned import turned
 from estimator.smoothing.walks import STATES
 
 PERIOD_S = 8.0
@@ -107,6 +109,7 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         solved = _solved(problem, layout.start(), solved_t)
         trimmed = trim(problem, solved)
         left = solved.chain.remainder(layout.length - 1)
+        left = turned(left, layout, problem.first(solved.x), solved.x)
         settle(state, layout, solved, left.matrix)
         found = learn(state, problem, solved)
         _judge_turns(state, layout, found)

@@ -24,7 +24,8 @@ from estimator.smoothing.learn import learn
 from estimator.smoothing.moved import Moved, moved_nodes
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.settle import keep_keyframes, settle
-from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.solved import Solved
 from estimator.smoothing.tracks import tracks
 from estimator.smoothing.window import keep_up
 from estimator.trackers.base import TrackerSettings

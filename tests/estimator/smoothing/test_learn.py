@@ -15,7 +15,7 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.position import Position
 from estimator.smoothing import learn, walks
 from estimator.smoothing.slips import doubts_of
-from estimator.smoothing.solve import Solved
+from estimator.smoothing.solved import Solved
 from tests.estimator.smoothing.windows import entered, problem_of, unlikelihood
 
 FIX_M, FIX_S = 0.02, 2

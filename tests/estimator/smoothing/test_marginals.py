@@ -15,7 +15,8 @@ from estimator.measurements.node import Node
 from estimator.measurements.position import Position
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.groups import Group, Groups
-from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.solved import Solved
 from estimator.smoothing.walks import STATES
 from tests.estimator.smoothing.windows import at_rest, dense, fused, problem_of
 from tests.estimator.walks import two_responders

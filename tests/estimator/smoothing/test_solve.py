@@ -21,3 +21,16 @@ def test_since_an_epoch_a_unit_goes_its_own_way_and_before_it_nothing_changes() 
     assert np.array_equal(reckoned[before], x[before])
     border = slice(layout.length * layout.width, None)
     assert np.array_equal(reckoned[border], x[border])
+
+
+def test_rows_that_are_left_out_neither_pull_nor_cost() -> None:
+    problem = problem_of(fused(walk()))
+    left_out = np.arange(0, len(problem.rows.pairs), 3)
+    others = problem.without(left_out)
+    x = problem.layout.start()
+    found = others.solve(x)
+    assert abs(found.cost - problem.solve(x).cost) > 1.0
+    problem.rows.readings.value[left_out] += 50.0
+    again = others.solve(x)
+    assert np.abs(again.x - found.x).max() < 1e-9
+    assert again.cost == found.cost

@@ -15,7 +15,8 @@ from estimator.smoothing.chain import Chain
 from estimator.smoothing.extent import spacing_s
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.rows import Rows
-from estimator.smoothing.solve import Problem, Solved
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.solved import Solved
 from estimator.smoothing.walks import STATES
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import online_pass

@@ -1,0 +1,55 @@
+"""Readings to a node that lies elsewhere, and have drawn all the rest along with them.
+
+A few ranges to a kicked breadcrumb rather bend the way of who passes it than disagree with it: what they miss
+in their own residuals, all others pay. So the window is solved again without them.
+"""
+
+import numpy as np
+
+from estimator.fusion.modes import find_modes
+from estimator.fusion.nodes import NodeState
+from estimator.graph.kernels import Integers
+from estimator.smoothing.elsewhere import FAR_M, GAIN, Place, Seen, clear_place, seen_of
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.solved import Solved
+
+DISAGREEING = 5.0
+"""Readings that do not cost more themselves, in log likelihood, are not suspected of costing others."""
+ITERATIONS = 6
+
+
+def drawn_place(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> Place | None:
+    """The place that readings have for a node, where all others fit clearly better without them.
+
+    Args:
+        problem: of the window.
+        solved: its solution.
+        node: the node.
+        mine: its readings that may disagree with its place, in order of epoch.
+    """
+    here = seen_of(problem, solved, node, mine)
+    if here is None or not _may_disagree(here):
+        return None
+    if not solved.rests:
+        # What the last steps have left is nobody's fault.
+        solved = problem.solve(solved.x, iterations=ITERATIONS)
+    others = problem.without(here.rows)
+    alone = others.solve(solved.x, iterations=ITERATIONS)
+    relief = others.cost(solved.x, solved.linear.residual, solved.motions) - alone.cost
+    here, there = (seen_of(problem, one, node, mine) for one in (solved, alone))
+    if here is None or there is None or relief <= GAIN:
+        return None
+    modes = find_modes(there.sought)
+    if not modes:
+        return None
+    before = float(here.costs(here.residual).sum()) + relief
+    after = float(there.costs(there.residual_at(modes[0].position_m)).sum())
+    return clear_place(there, modes[0], before, after)
+
+
+def _may_disagree(seen: Seen) -> bool:
+    """Whether readings disagree with their node's place at all, and tell of another one that is not near."""
+    if float(seen.costs(seen.residual).sum()) < DISAGREEING:
+        return False
+    modes = find_modes(seen.sought)
+    return bool(modes) and float(np.hypot(*(modes[0].position_m - seen.place_m)[:2])) > FAR_M

@@ -1,0 +1,210 @@
+"""Where north is, nobody learns from readings between nodes: not from steps, not when places are moved."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from estimator.fusion.state import FusionState
+from estimator.graph.dense import Array
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.node import Node
+from estimator.measurements.range import Range
+from estimator.simulate import scenario
+from estimator.simulate.base import Report
+from estimator.smoothing.carried import Carried
+from estimator.smoothing.chain import Chain, Remainder
+from estimator.smoothing.groups import Groups
+from estimator.smoothing.layout import Layout
+from estimator.smoothing.solve import Problem
+from estimator.smoothing.turned import STEADY_M, turn, turned
+from estimator.smoothing.walks import STATES, unit_motion
+from estimator.smoothing.ways import Way
+from estimator.trackers.base import TrackerSettings
+from estimator.trackers.lag import Lag
+from tests.estimator.smoothing.test_jacobians import steps_of, unit_states
+from tests.estimator.smoothing.test_marginals import prior_at, window_from
+from tests.estimator.smoothing.windows import difference, fused, problem_of, random_state
+
+seeds = st.integers(0, 10_000)
+HEADING_SIGMA_RAD = 0.1
+
+
+def turn_of_walk(states: Array) -> Array:
+    """What a turn of the map about the base does to units' numbers, k × 6: places J p, headings 1."""
+    found = np.zeros(states.shape)
+    found[:, 0], found[:, 1], found[:, 3] = -states[:, 1], states[:, 0], 1.0
+    return found
+
+
+def turn_of(layout: Layout, x: Array) -> Array:
+    """The same for all unknowns of a window, flat."""
+    size = layout.length * layout.width
+    keyframes = x[:size].reshape(layout.length, layout.width)
+    found = np.zeros_like(keyframes)
+    for i in range(len(layout.walks)):
+        own = slice(STATES * i, STATES * (i + 1))
+        found[:, own] = turn_of_walk(keyframes[:, own])
+    border = np.zeros(layout.border)
+    for start in layout.stands.values():
+        border[start], border[start + 1] = -x[size + start + 1], x[size + start]
+    return np.concatenate([found.ravel(), border])
+
+
+@given(seeds)
+def test_a_way_that_is_turned_as_a_whole_fits_as_it_did(seed: int) -> None:
+    """Wherever its keyframes are: a step whose ends do not fit says nothing of north either."""
+    chance = np.random.default_rng(seed)
+    way, times = Way(0.0, steps_of(seed), (1.0, 1.0)), np.sort(chance.uniform(0.0, 40.0, 5))
+    states = unit_states(chance, 5)
+    motion = unit_motion(way.between(times[:-1], times[1:]), np.diff(times), states)
+    turn = turn_of_walk(states)
+    for k in range(4):
+        assert motion.transition[k] @ turn[k] == pytest.approx(turn[k + 1], abs=1e-9)
+
+
+def walk_past_beacons() -> Problem:
+    """A unit walks between beacons that nobody has surveyed."""
+    chance = np.random.default_rng(1)
+    readings: list[Node | Displacement | Range] = [
+        Node(t=0.0, node="base", role="base", position_m=(0.0, 0.0, 0.0)),
+        Node(
+            t=0.0,
+            node="ff1",
+            role="responder",
+            position_m=(1.0, 0.0, 0.0),
+            sigma_m=1e3,
+            heading_sigma_rad=HEADING_SIGMA_RAD,
+        ),
+    ]
+    places = {"b1": np.array([5.0, 8.0]), "b2": np.array([-6.0, 12.0]), "base": np.zeros(2)}
+    readings += [Node(t=0.0, node=name, role="beacon") for name in ("b1", "b2")]
+    at = np.array([1.0, 0.0])
+    for second in range(1, 61):
+        step = np.array([np.cos(second / 7.0), np.sin(second / 7.0)])
+        at = at + step
+        e, n = (step + chance.normal(0.0, 0.03, 2)).tolist()
+        readings.append(Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(e, n, 0.0)))
+        for name, place in places.items():
+            range_m = float(np.hypot(*(at - place)) + chance.normal(0.0, 0.1))
+            readings.append(Range(t=float(second), a="ff1", b=name, range_m=range_m, technology="uwb"))
+    return problem_of(fused(readings))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_window_knows_of_north_what_was_said_of_headings(seed: int) -> None:
+    problem = walk_past_beacons()
+    layout = problem.layout
+    assert len(layout.stands) == 2
+    x = random_state(problem, seed)
+    linear, motions = problem.linearise(x), problem.motions(x)
+    problem.rows.widen(x, linear.jacobian)
+    chain = problem.assemble(x, linear, problem.weigh(linear.residual), motions)
+    left = chain.remainder(layout.length - 1)
+    last = turn_of(layout, x)[(layout.length - 1) * layout.width :]
+    known = float(last @ left.matrix @ last)
+    # Beside what was said, the entry and the bearing of who stands are known next to not at all.
+    assert known == pytest.approx(1.0 / HEADING_SIGMA_RAD**2, rel=0.1)
+
+
+@given(seeds)
+def test_what_was_linearised_elsewhere_knows_no_turn_of_where_places_are_now(seed: int) -> None:
+    problem, chance = WALKED, np.random.default_rng(seed)
+    layout = problem.layout
+    size, width = layout.length * layout.width, layout.width
+    now = layout.start()
+    now[size:] += chance.normal(0.0, 3.0, layout.border)
+    was = now.copy()
+    for start in layout.stands.values():
+        far = 0.4 * np.hypot(*now[size + start : size + start + 2])
+        was[size + start : size + start + 2] += far * chance.uniform(-0.7, 0.7, 2)
+    old, new = (turn_of(layout, at)[size - width :] for at in (was, now))
+    rows = chance.normal(0.0, 1.0, (2 * len(old), len(old)))
+    rows -= np.outer(rows @ old, old) / (old @ old)
+    found = turned(Remainder(rows.T @ rows, rows.T @ np.ones(len(rows))), layout, was, now)
+    stiff = float(np.abs(found.matrix).max() * (new @ new))
+    near = np.array([np.hypot(*now[size + s : size + s + 2]) for s in layout.stands.values()])
+    # Of a place at r m from the base, 1 m² / r² of the way that it has moved is left as it was.
+    assert float(new @ found.matrix @ new) < 2.0 * stiff * float((1.0 / (near**2 + 1.0)).max()) ** 2 + 1e-9
+    assert float(np.linalg.eigvalsh(found.matrix)[0]) > -1e-9 * float(np.abs(found.matrix).max())
+
+
+def test_a_place_that_has_jumped_is_left_as_it_was_said() -> None:
+    layout = WALKED.layout
+    now = layout.start()
+    was = now.copy()
+    was[layout.length * layout.width :] *= -1.0
+    size = layout.width + layout.border
+    left = Remainder(np.eye(size), np.ones(size))
+    assert turned(left, layout, was, now) is left
+
+
+@pytest.mark.parametrize("by_rad", [-0.4, 0.05, 1.0])
+def test_a_map_turned_as_a_whole_fits_what_is_known_from_before_but_for_what_was_said_of_headings(
+    by_rad: float,
+) -> None:
+    whole = WALKED
+    solved = whole.solve(whole.layout.start())
+    cut = whole.layout.length // 2
+    prior = prior_at(whole, solved, cut)
+    window = window_from(whole, solved, cut)
+    carried, layout = Carried(window.layout, prior), window.layout
+    x = solved.x[cut * layout.width :]
+    size = layout.length * layout.width
+    there, keyframes = x.copy(), x[:size].reshape(layout.length, layout.width).copy()
+    keyframes[:, :2] = turn(keyframes[:, :2], by_rad)
+    keyframes[:, 3] += by_rad
+    there[:size] = keyframes.ravel()
+    for start in layout.stands.values():
+        there[size + start : size + start + 2] = turn(x[size + start : size + start + 2], by_rad)
+    n = np.concatenate([turn_of(layout, x)[: layout.width], turn_of(layout, x)[size:]])
+    n = n[: len(prior.vector)]
+    known, pull = float(n @ prior.matrix @ n), float(n @ prior.vector)
+    expected = 0.5 * known * by_rad**2 - pull * by_rad
+    assert known < 1.1 / HEADING_SIGMA_RAD**2
+    assert carried.cost(there) - carried.cost(x) == pytest.approx(expected, rel=0.02, abs=0.02)
+    first = carried.first(there)
+    for start in layout.stands.values():
+        own = slice(size + start, size + start + 2)
+        share = STEADY_M / float(np.hypot(*there[own]))
+        assert np.hypot(*(first[own] - there[own])) < share * abs(by_rad) * STEADY_M
+
+    def cost(at: Array) -> Array:
+        return np.array([carried.cost(at)])
+
+    chain = Chain(layout.length, Groups(layout.width, layout.border, [carried.coupled]).each)
+    carried.add(chain, there)
+    slope = -difference(cost, there)[0]
+    assert np.abs(chain.slope() - slope).max() < 0.02 * np.abs(slope).max() + 1e-3
+
+
+def test_in_twenty_minutes_nobody_learns_where_north_is() -> None:
+    """Three units search two storeys; only what they said of their headings at the door is absolute."""
+    at_s, known = zip(*north(scenario("two-hours", 4).reports, 1200.0), strict=True)
+    early = min(k for t, k in zip(at_s, known, strict=True) if t <= 300.0)
+    late = float(np.median([k for t, k in zip(at_s, known, strict=True) if t > 1000.0]))
+    assert late < 1.5 * early
+
+
+def north(reports: tuple[Report, ...], until_s: float) -> Iterator[tuple[float, float]]:
+    """What the live view knows of where the map is turned to (1/rad²), every ten seconds."""
+    lag, shown_s = Lag(TrackerSettings().lag_s, FusionState()), 10.0
+    for report in reports:
+        if report.sent_s > until_s:
+            return
+        if report.sent_s >= shown_s:
+            graph = lag.state().graph
+            turn = np.zeros(graph.size)
+            for variable, row in graph.starts.items():
+                if variable.kind == "unit":
+                    turn[row] = 1.0
+                elif variable.kind == "position":
+                    turn[row], turn[row + 1] = -graph.reference[row + 1], graph.reference[row]
+            yield shown_s, float(turn @ graph.information @ turn)
+            shown_s += 10.0
+        lag.add([report.reading])
+
+
+WALKED = walk_past_beacons()
