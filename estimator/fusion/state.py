@@ -130,7 +130,7 @@ class FusionState:
     def base_place(self) -> Vector3:
         """Where the base stands: the origin, unless it says otherwise."""
         for node in self.nodes.values():
-            if node.mode == "fixed" and node.place_m is not None:
+            if node.role == "base" and node.place_m is not None:
                 return node.place_m
         return (0.0, 0.0, 0.0)
 

@@ -4,14 +4,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from estimator.fusion.prior import Key, Prior
+from estimator.fusion.prior import SIZES, Key, Prior
 from estimator.graph.dense import Array, Indices
 from estimator.graph.kernels import Integers
+from estimator.graph.kirchhoff import marginalised
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.groups import Group
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.turned import across, turn, turn_between
-from estimator.smoothing.walks import STATES
+from estimator.smoothing.walks import PLACES, STATES
 
 
 class Shared(NamedTuple):
@@ -39,18 +40,22 @@ class Carried:
     """
 
     def __init__(self, layout: Layout, prior: Prior) -> None:
-        self._prior = prior
         self._size, self._width = layout.length * layout.width, layout.width
         columns = [_columns(layout, key) for key in prior.keys]
-        self._at = np.concatenate(columns or [np.zeros(0, dtype=np.intp)]).astype(np.intp)
-        self._kept = np.flatnonzero(self._at >= 0)
+        at = np.concatenate(columns or [np.zeros(0, dtype=np.intp)]).astype(np.intp)
+        kept, gone = np.flatnonzero(at >= 0), np.flatnonzero(at < 0)
+        self._at, self._reference = at[kept], prior.reference[kept]
+        self._matrix, self._vector = prior.matrix, prior.vector
+        if len(gone):
+            # Held where they were, they would not let the map turn.
+            self._matrix, self._vector = marginalised(prior.matrix, prior.vector, gone, kept)
         self._shared: list[Shared] = []
         self._base_m = np.array(layout.state.base_place()[:2])
-        self._places, self._speeds = _turning(layout, prior, self._at)
+        self._places, self._speeds = (np.searchsorted(kept, pairs) for pairs in _turning(prior, at))
 
     def first(self, x: Array) -> Array:
         """The estimate with the border where the prior was linearised, turned as the map is now, flat."""
-        first, there = x.copy(), self._prior.reference.copy()
+        first, there = x.copy(), self._reference.copy()
         there[self._places] = self._base_m + turn(there[self._places] - self._base_m, self._turned_by(x))
         lasting = self._at >= self._size
         first[self._at[lasting]] = there[lasting]
@@ -59,20 +64,23 @@ class Carried:
     def cost(self, x: Array) -> float:
         """Its negative log likelihood at an estimate, flat, up to a constant."""
         moved = self._moved(x)
-        return float(0.5 * moved @ (self._prior.matrix @ moved) - self._prior.vector @ moved)
+        return float(0.5 * moved @ (self._matrix @ moved) - self._vector @ moved)
 
     @property
     def coupled(self) -> Integers:
         """Pairs of columns that it ties together, m × 2, as `groups.Groups` takes them."""
-        at = self._at[self._kept]
-        tied = np.argwhere(self._prior.matrix[np.ix_(self._kept, self._kept)] != 0.0)
-        columns = np.where(at < self._size, at, at - self._size + self._width)[tied]
-        return np.ascontiguousarray(columns, dtype=np.int64)
+        tied = self._matrix != 0.0
+        for east, north in np.concatenate([self._places, self._speeds]):
+            # Turned with the map, what one of them is tied to the other is as well.
+            tied[[east, north]] = tied[east] | tied[north]
+            tied[:, [east, north]] = (tied[:, east] | tied[:, north])[:, None]
+        columns = np.where(self._at < self._size, self._at, self._at - self._size + self._width)
+        return np.ascontiguousarray(columns[np.argwhere(tied)], dtype=np.int64)
 
     def add(self, chain: Chain, x: Array) -> None:
         """Add it to the normal equations at an estimate, flat; the chain always has the same groups."""
-        turned_by, matrix = self._turned_by(x), self._prior.matrix.copy()
-        vector = self._prior.vector - self._prior.matrix @ self._moved(x)
+        turned_by, matrix = self._turned_by(x), self._matrix.copy()
+        vector = self._vector - matrix @ self._moved(x)
         for at in (self._places, self._speeds):
             vector[at] = turn(vector[at], turned_by)
             matrix[at] = turn(matrix[at].transpose(0, 2, 1), turned_by).transpose(0, 2, 1)
@@ -95,7 +103,7 @@ class Carried:
 
     def _turned_by(self, x: Array) -> float:
         """By how much the map is turned about the base since the prior was linearised (rad)."""
-        was_m = self._prior.reference[self._places] - self._base_m
+        was_m = self._reference[self._places] - self._base_m
         return turn_between(was_m, x[self._at[self._places]] - self._base_m)
 
     def _moved(self, x: Array) -> Array:
@@ -104,26 +112,23 @@ class Carried:
         R(−θ) x − r + θ J r of places: what a turn of the whole map by θ moves is along (J r, 1) only, however
         large the turn, and of that the prior knows nothing but what was said of headings.
         """
-        moved = np.zeros(len(self._at))
-        moved[self._kept] = x[self._at[self._kept]] - self._prior.reference[self._kept]
+        moved = x[self._at] - self._reference
         turned_by = self._turned_by(x)
         for at, middle in ((self._places, self._base_m), (self._speeds, np.zeros(2))):
-            was, now = self._prior.reference[at] - middle, x[self._at[at]] - middle
+            was, now = self._reference[at] - middle, x[self._at[at]] - middle
             moved[at] = turn(now, -turned_by) - was + turned_by * across(was)
         return moved
 
 
-def _turning(layout: Layout, prior: Prior, columns: Indices) -> tuple[Indices, Indices]:
+def _turning(prior: Prior, columns: Indices) -> tuple[Indices, Indices]:
     """Which of a prior's numbers are places that are still there, and which velocities: east and north."""
-    units = {walk.number for walk in layout.walks if walk.way is not None}
     places, speeds, start = [], [], 0
-    for kind, number in prior.keys:
-        lasts = kind in ("walk", "stand") and columns[start] >= 0
-        if lasts:
+    for kind, _ in prior.keys:
+        if kind in ("walk", "free", "stand") and columns[start] >= 0:
             places.append((start, start + 1))
-        if lasts and kind == "walk" and number not in units:
-            speeds.append((start + 3, start + 4))
-        start += STATES if kind == "walk" else 3 if kind == "stand" else 2
+        if kind == "free" and columns[start + PLACES] >= 0:
+            speeds.append((start + PLACES, start + PLACES + 1))
+        start += SIZES[kind]
     return np.array(places, dtype=np.intp).reshape(-1, 2), np.array(speeds, dtype=np.intp).reshape(-1, 2)
 
 
@@ -131,14 +136,19 @@ def _columns(layout: Layout, key: Key) -> Indices:
     """Flat columns of a prior's block; −1 where it is no longer there."""
     kind, number = key
     size = layout.length * layout.width
-    if kind == "walk":
+    if kind in ("walk", "free"):
         start = layout.column_of.get(number)
-        return np.full(STATES, -1) if start is None else np.arange(start, start + STATES)
-    if kind == "stand":
+    elif kind == "stand":
         start = layout.stands.get(number)
-        return np.full(3, -1) if start is None else size + np.arange(start, start + 3)
-    start = layout.technologies.get(key)
-    return np.full(2, -1) if start is None else size + np.arange(start, start + 2)
+    else:
+        start = layout.technologies.get(key)
+    if start is None:
+        return np.full(SIZES[kind], -1)
+    found = np.arange(start, start + SIZES[kind]) + (0 if kind in ("walk", "free") else size)
+    if kind == "free" and layout.walks[start // STATES].way is not None:
+        # Its bearer has a PDR unit now.
+        found[PLACES:] = -1
+    return found
 
 
 def _common(at: Indices, columns: Indices) -> tuple[Indices, Indices]:

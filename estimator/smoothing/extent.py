@@ -52,7 +52,7 @@ def trim(problem: Problem, solved: Solved) -> tuple[Prior, float] | None:
     epochs: dict[int, float] = {}
     for i, walk in enumerate(layout.walks):
         if walk.first <= cut <= walk.last:
-            keys.append(("walk", walk.number))
+            keys.append(("free" if walk.way is None else "walk", walk.number))
             epochs[walk.number] = float(layout.times[cut, i])
             at.append(np.arange(STATES * i, STATES * (i + 1)))
     for number, start in layout.stands.items():
@@ -77,7 +77,7 @@ def restart(state: FusionState) -> None:
     """
     graph = state.graph
     walking = [n for n in state.nodes.values() if n.moving]
-    keys: list[Key] = [("walk", n.index) for n in walking]
+    keys: list[Key] = [("walk" if n.mode == "unit" else "free", n.index) for n in walking]
     at: list[Indices] = []
     for node in walking:
         rest = node.unit if node.mode == "unit" else node.velocity

@@ -10,7 +10,7 @@ from estimator.fusion.calibration import bias_sigma_m, narrow_sigma, scale_sigma
 from estimator.fusion.prior import Key
 from estimator.graph.dense import Array, Indices
 from estimator.smoothing.layout import Layout
-from estimator.smoothing.walks import STATES
+from estimator.smoothing.walks import PLACES, STATES
 
 
 class Priors(NamedTuple):
@@ -40,14 +40,17 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
     known_by: list[float] = []
     begins = state.ledger.table("begins")
     for i, walk in enumerate(layout.walks):
-        if ("walk", walk.number) in known:
+        before = ("free", walk.number) in known
+        if ("walk", walk.number) in known or (before and walk.way is None):
             continue
         rows = begins[begins[:, 1] == walk.number]
         start = walk.first * layout.width + STATES * i
-        at += range(start, start + STATES)
         entry, role = rows[0], "uav" if rows[0][3] else "responder"
-        mean += entry[4:7].tolist()
-        known_by += (entry[7:10] ** -2.0).tolist()
+        if not before:
+            at += range(start, start + PLACES)
+            mean += entry[4:7].tolist()
+            known_by += (entry[7:10] ** -2.0).tolist()
+        at += range(start + PLACES, start + STATES)
         if walk.way is None:
             across, upwards = physics.SPEED_SIGMA_MPS[role]
             mean += [0.0, 0.0, 0.0]

@@ -23,14 +23,17 @@ to say there what was said here would make up knowledge, or lose it."""
 
 
 def turn_between(was_m: Array, now_m: Array) -> float:
-    """By how much places are turned about the base, by least squares (rad).
+    """By how much places are turned about the base, by least squares (rad), less than a quarter turn.
+
+    Somewhat less than it is where all of them are near the base: they may as well have been moved.
 
     Args:
         was_m: from the base to where they were, m × 2.
         now_m: to where they are, m × 2.
     """
     across = float((was_m[:, 0] * now_m[:, 1] - was_m[:, 1] * now_m[:, 0]).sum())
-    return float(np.arctan2(across, float((was_m * now_m).sum()) + STEADY_M**2))
+    along = max(float((was_m * now_m).sum()), 0.0)
+    return float(np.arctan2(across, along + STEADY_M**2))
 
 
 def turn(ways: Array, by_rad: float) -> Array:

@@ -12,7 +12,8 @@ from estimator.graph.kernels import half_inverse
 FLOOR = np.array([1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12])
 VARIANCES = np.array([6, 6, 7, 8, 9, 10])
 """Which sums of a way are the variances of which states."""
-STATES = 6
+STATES, PLACES = 6, 3
+"""Numbers of a state, and how many of them in front are its place."""
 
 
 class Motion(NamedTuple):

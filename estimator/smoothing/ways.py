@@ -125,7 +125,8 @@ def sum_between(
 ) -> None:
     """What a way's displacements say of it between two epochs, 12, moments from `since` on.
 
-    Silence after the last displacement adds a random walk (`silence.wandered_m2`).
+    Silence adds a random walk (`silence.wandered_m2`), after the last displacement and before the first:
+    whose unit is switched on inside has walked there as well.
 
     Args:
         begin_t: epoch at which it begins (s).
@@ -141,8 +142,10 @@ def sum_between(
         found[c] -= before[c]
     for c in range(3):
         found[3 + c] -= found[c] * (since - begin_t)
-    silent_s = until - max(since, marks[-1])
-    wander = wandered_m2(silent_s, np.inf) if silent_s > 0.0 else 0.0
+    wander = 0.0
+    for silent_s in (min(until, marks[0]) - since, until - max(since, marks[-1])):
+        if silent_s > 0.0:
+            wander += wandered_m2(silent_s, np.inf)
     found[6] += wander
     found[7] += 0.1 * wander
 

@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 from estimator.fusion.free import free_motion
+from estimator.measurements import AnyReading
+from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.position import Position
+from estimator.measurements.range import Range
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.kirchhoff import KirchhoffTracker
 
@@ -33,3 +36,32 @@ def test_a_node_that_was_silent_for_long_is_found_where_it_is_heard_again(silenc
     assert found.position_m == pytest.approx(far, abs=6.0)
     assert found.covariance_m2 is not None
     assert 0.1 < found.covariance_m2[0] < 2.0
+
+
+@pytest.mark.parametrize("switched_on_s", [60, 400])
+def test_who_switches_his_unit_on_later_is_followed_on(switched_on_s: int) -> None:
+    """While he walked without it he did not stand still, and his velocity was no gyro bias.
+
+    The first is for the window to know, the second for what has left it.
+    """
+    chance = np.random.default_rng(3)
+    corners = {"a1": (0.0, 0.0), "a2": (30.0, 0.0), "a3": (0.0, 30.0), "a4": (30.0, 30.0)}
+    tracker = KirchhoffTracker(TrackerSettings())
+    tracker.fold([Node(t=0.0, node=n, role="anchor", position_m=(*m, 0.0)) for n, m in corners.items()])
+    tracker.fold([Node(t=0.0, node="ff1", role="responder", position_m=(15.0, 5.0, 0.0), sigma_m=0.5)])
+    for second in range(1, switched_on_s + 61):
+        was_m, now_m = (
+            np.array([15.0 + 10.0 * np.sin(t / 20.0), 15.0 - 10.0 * np.cos(t / 20.0)])
+            for t in (second - 1, second)
+        )
+        seen: list[AnyReading] = []
+        for name, place_m in corners.items():
+            range_m = float(np.hypot(*(now_m - place_m)) + chance.normal(0.0, 0.1))
+            seen.append(Range(t=float(second), a="ff1", b=name, range_m=range_m, technology="uwb"))
+        if second > switched_on_s:
+            e, n = (now_m - was_m + chance.normal(0.0, 0.02, 2)).tolist()
+            seen.append(Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(e, n, 0.0)))
+        tracker.fold(seen)
+        found = {e.node: e.position_m for e in tracker.estimates()}["ff1"]
+        assert found is not None
+        assert second < 5 or np.hypot(*(np.array(found[:2]) - now_m)) < 0.7

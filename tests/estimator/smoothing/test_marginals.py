@@ -160,7 +160,7 @@ def prior_at(problem: Problem, solved: Solved, cut: int) -> Prior:
     epochs: dict[int, float] = {}
     for i, walk in enumerate(layout.walks):
         if walk.first <= cut <= walk.last:
-            keys.append(("walk", walk.number))
+            keys.append(("free" if walk.way is None else "walk", walk.number))
             epochs[walk.number] = float(layout.times[cut, i])
             at += range(STATES * i, STATES * (i + 1))
     for number, start in layout.stands.items():

@@ -14,19 +14,16 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.simulate import scenario
 from estimator.simulate.base import Report
-from estimator.smoothing.carried import Carried
-from estimator.smoothing.chain import Chain, Remainder
-from estimator.smoothing.groups import Groups
+from estimator.smoothing.chain import Remainder
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.solve import Problem
-from estimator.smoothing.turned import STEADY_M, turn, turned
+from estimator.smoothing.turned import turn_between, turned
 from estimator.smoothing.walks import STATES, unit_motion
 from estimator.smoothing.ways import Way
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.lag import Lag
 from tests.estimator.smoothing.test_jacobians import steps_of, unit_states
-from tests.estimator.smoothing.test_marginals import prior_at, window_from
-from tests.estimator.smoothing.windows import difference, fused, problem_of, random_state
+from tests.estimator.smoothing.windows import fused, problem_of, random_state
 
 seeds = st.integers(0, 10_000)
 HEADING_SIGMA_RAD = 0.1
@@ -131,6 +128,14 @@ def test_what_was_linearised_elsewhere_knows_no_turn_of_where_places_are_now(see
     assert float(np.linalg.eigvalsh(found.matrix)[0]) > -1e-9 * float(np.abs(found.matrix).max())
 
 
+@given(st.floats(-7.0, 7.0), st.floats(-7.0, 7.0), st.floats(-7.0, 7.0))
+def test_who_crosses_the_base_has_not_turned_the_map_by_half(east: float, was_e: float, was_n: float) -> None:
+    was_m = np.array([[was_e, was_n]])
+    by_rad = [turn_between(was_m, np.array([[east, north]])) for north in (-1e-6, 1e-6)]
+    assert np.abs(by_rad).max() < np.pi / 2
+    assert by_rad[0] == pytest.approx(by_rad[1], abs=1e-4)
+
+
 def test_a_place_that_has_jumped_is_left_as_it_was_said() -> None:
     layout = WALKED.layout
     now = layout.start()
@@ -139,45 +144,6 @@ def test_a_place_that_has_jumped_is_left_as_it_was_said() -> None:
     size = layout.width + layout.border
     left = Remainder(np.eye(size), np.ones(size))
     assert turned(left, layout, was, now) is left
-
-
-@pytest.mark.parametrize("by_rad", [-0.4, 0.05, 1.0])
-def test_a_map_turned_as_a_whole_fits_what_is_known_from_before_but_for_what_was_said_of_headings(
-    by_rad: float,
-) -> None:
-    whole = WALKED
-    solved = whole.solve(whole.layout.start())
-    cut = whole.layout.length // 2
-    prior = prior_at(whole, solved, cut)
-    window = window_from(whole, solved, cut)
-    carried, layout = Carried(window.layout, prior), window.layout
-    x = solved.x[cut * layout.width :]
-    size = layout.length * layout.width
-    there, keyframes = x.copy(), x[:size].reshape(layout.length, layout.width).copy()
-    keyframes[:, :2] = turn(keyframes[:, :2], by_rad)
-    keyframes[:, 3] += by_rad
-    there[:size] = keyframes.ravel()
-    for start in layout.stands.values():
-        there[size + start : size + start + 2] = turn(x[size + start : size + start + 2], by_rad)
-    n = np.concatenate([turn_of(layout, x)[: layout.width], turn_of(layout, x)[size:]])
-    n = n[: len(prior.vector)]
-    known, pull = float(n @ prior.matrix @ n), float(n @ prior.vector)
-    expected = 0.5 * known * by_rad**2 - pull * by_rad
-    assert known < 1.1 / HEADING_SIGMA_RAD**2
-    assert carried.cost(there) - carried.cost(x) == pytest.approx(expected, rel=0.02, abs=0.02)
-    first = carried.first(there)
-    for start in layout.stands.values():
-        own = slice(size + start, size + start + 2)
-        share = STEADY_M / float(np.hypot(*there[own]))
-        assert np.hypot(*(first[own] - there[own])) < share * abs(by_rad) * STEADY_M
-
-    def cost(at: Array) -> Array:
-        return np.array([carried.cost(at)])
-
-    chain = Chain(layout.length, Groups(layout.width, layout.border, [carried.coupled]).each)
-    carried.add(chain, there)
-    slope = -difference(cost, there)[0]
-    assert np.abs(chain.slope() - slope).max() < 0.02 * np.abs(slope).max() + 1e-3
 
 
 def test_in_twenty_minutes_nobody_learns_where_north_is() -> None:

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from estimator.fusion.silence import wandered_m2
 from estimator.smoothing.ways import LAID, Laid, Way
 
 Steps = np.ndarray[tuple[int, int], np.dtype[np.float64]]
@@ -57,6 +58,22 @@ def test_a_way_laid_out_for_readings_is_what_lies_between_their_epochs(
     assert laid.moment[mine] == pytest.approx(said[mine, 3:6])
     assert laid.unsure_m2[mine] == pytest.approx(np.abs(said[mine][:, [6, 6, 7]]))
     assert all((part[~mine] == 7.0).all() for part in laid), "the ends of others stay as they are"
+
+
+@given(since_s=st.floats(50.0, 99.0), until_s=st.floats(100.0, 120.0), after_s=st.floats(125.0, 200.0))
+def test_before_its_first_displacement_and_after_its_last_a_bearer_may_have_walked(
+    since_s: float, until_s: float, after_s: float
+) -> None:
+    way = Way(100.0, walked(4), (1.0, 1.0))
+    first, last = 100.0, float(walked(4)[-1, 0])
+    since, until, inside = (np.array([t]) for t in (since_s, until_s, first))
+    wandered = wandered_m2(first - since_s, np.inf)
+    said = way.between(since, until)[0] - way.between(inside, until)[0]
+    assert said[6:8] == pytest.approx([wandered, 0.1 * wandered])
+    assert said[:3] == pytest.approx(0.0)
+    assert way.between(since, np.array([after_s]))[0][6] == pytest.approx(
+        wandered + way.between(inside, np.array([last]))[0][6] + wandered_m2(after_s - last, np.inf)
+    )
 
 
 def test_inside_a_long_displacement_a_unit_may_have_been_anywhere_between_its_ends() -> None:
