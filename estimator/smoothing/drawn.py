@@ -4,6 +4,8 @@ A few ranges to a kicked breadcrumb rather bend the way of who passes it than di
 in their own residuals, all others pay. So the window is solved again without them.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from estimator.fusion.modes import find_modes
@@ -18,8 +20,22 @@ DISAGREEING = 5.0
 ITERATIONS = 6
 
 
-def drawn_place(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> Place | None:
+class Drawn(NamedTuple):
+    """Where readings put a node that have drawn others along.
+
+    Attributes:
+        place: its place.
+        alone: the solution without them, which is not bent by them.
+    """
+
+    place: Place
+    alone: Solved
+
+
+def drawn_place(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> Drawn | None:
     """The place that readings have for a node, where all others fit clearly better without them.
+
+    Only of readings by who has a PDR unit, or stands: who has none goes where his ranges take him.
 
     Args:
         problem: of the window.
@@ -27,13 +43,25 @@ def drawn_place(problem: Problem, solved: Solved, node: NodeState, mine: Integer
         node: the node.
         mine: its readings that may disagree with its place, in order of epoch.
     """
-    here = seen_of(problem, solved, node, mine)
+    here = seen_of(problem, solved, node, mine[problem.rows.held[mine]])
     if here is None or not _may_disagree(here):
         return None
-    if not solved.rests:
-        # What the last steps have left is nobody's fault.
-        solved = problem.solve(solved.x, iterations=ITERATIONS)
-    others = problem.without(here.rows)
+    sigma = problem.rows.sigma
+    try:
+        return _without(problem, solved, node, here.rows)
+    except ValueError:
+        # Without them something hangs in the air: they have held it, not bent it.
+        return None
+    finally:
+        # Whoever is asked next is asked by the noise that the window was solved with.
+        problem.rows.sigma = sigma
+
+
+def _without(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> Drawn | None:
+    """The place that readings `mine` have for a node, if the others gain clearly without them."""
+    # What the last steps have left is nobody's fault.
+    solved = problem.solve(solved.x, iterations=ITERATIONS)
+    others = problem.without(mine)
     alone = others.solve(solved.x, iterations=ITERATIONS)
     relief = others.cost(solved.x, solved.linear.residual, solved.motions) - alone.cost
     here, there = (seen_of(problem, one, node, mine) for one in (solved, alone))
@@ -44,7 +72,8 @@ def drawn_place(problem: Problem, solved: Solved, node: NodeState, mine: Integer
         return None
     before = float(here.costs(here.residual).sum()) + relief
     after = float(there.costs(there.residual_at(modes[0].position_m)).sum())
-    return clear_place(there, modes[0], before, after)
+    place = clear_place(there, modes[0], before, after)
+    return None if place is None else Drawn(place, alone)
 
 
 def _may_disagree(seen: Seen) -> bool:

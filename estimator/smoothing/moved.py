@@ -28,7 +28,7 @@ from estimator.smoothing.solved import Solved
 ALL_KINDS, BY_KIND = ((RANGE, RSSI),), ((RANGE,), (RSSI,))
 """Kinds of readings that are asked together. Signals from afar say little of a place: among them ranges that
 disagree are not noticed. Where a window has not come to rest, its residuals are its own: there all are asked
-together, and one kind alone only raises a suspicion."""
+together, and one kind alone raises a suspicion, unless all others gain without the newest ranges."""
 RECENT_S = 120.0
 SUSPICION = 6.0
 """How much worse than usual, in log likelihood, readings are together before another place is looked for."""
@@ -86,12 +86,14 @@ def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) ->
             parts = [mine[first:] for first in _disagreeing(cost[mine])]
             # It may be drawn to its new place already: then what disagrees lies in front.
             parts += [mine[: len(mine) - first] for first in _disagreeing(cost[mine[::-1]])[:1]]
-            place = best_place(problem, solved, node, parts) if asked else None
+            place, by = best_place(problem, solved, node, parts) if asked else None, solved
             if place is None and together == (RANGE,) and parts and rows.pairs[parts[0][0], 0] > now - NEW_S:
-                place = drawn_place(problem, solved, node, parts[0])
+                drawn = drawn_place(problem, solved, node, parts[0])
+                if drawn is not None:
+                    place, by = drawn
             if place is None:
                 continue
-            since_t = changed_t(problem, solved, node, mine, place)
+            since_t = changed_t(problem, by, node, mine, place)
             later = own[rows.pairs[own, 0] >= since_t]
             if RANGE not in together and contradicted(problem, solved, node, later, place.position_m):
                 suspected = True

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from estimator.fusion import physics
 from estimator.fusion.ledger import BEARING, RANGE, RSSI
@@ -13,7 +14,7 @@ from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import wrap
 from estimator.smoothing.chosen import choose, kept
 from estimator.smoothing.encounters import candidates, near_dbm
-from estimator.smoothing.ends import UNIT, Ends, nodes_of, place_ends
+from estimator.smoothing.ends import FREE, UNIT, Ends, nodes_of, place_ends
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals
 
@@ -196,6 +197,11 @@ class Rows:
     def places(self, x: Array) -> tuple[Array, Array]:
         """Where both ends of each pair are at an estimate, m × 3 each (m)."""
         return place_ends(self._a.table, x).place, place_ends(self._b.table, x).place
+
+    @property
+    def held(self) -> NDArray[np.bool_]:
+        """Whether both ends of each pair have a PDR unit, or stand: no velocity takes them anywhere, m."""
+        return np.asarray((self._a.table.kind != FREE) & (self._b.table.kind != FREE))
 
     def by_units(self, source: int) -> bool:
         """Whether nodes with a PDR unit take part in the readings of a technology."""

@@ -116,8 +116,8 @@ class Problem:
     def linearise(self, x: Array) -> Linearised:
         """The rows at an estimate, with first-estimate Jacobians (estimation.md, point 6).
 
-        What the prior was linearised at, it stays linearised at: where new derivatives by the same numbers
-        were taken elsewhere, their sum would know what nobody has measured, as where north is.
+        Where the prior was linearised, turned as the map has been since: where new derivatives by the same
+        numbers were taken elsewhere, their sum would know what nobody has measured, as where north is.
         """
         return Linearised(self._jacobian(x), self.rows.residual(x))
 

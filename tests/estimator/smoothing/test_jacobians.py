@@ -72,7 +72,8 @@ def test_the_residuals_of_motions_change_with_both_their_ends(seed: int) -> None
         lambda x: free_motions("responder", durations).motion(x),
     ]
     for motion_of in kinds:
-        for k in range(4):  # to where the motion leads: elsewhere the scale of a unit's noise has a part in F
+        # To where the motion leads: elsewhere a unit's heading, and the scale of its noise, have a part in F.
+        for k in range(4):
             states[k + 1] -= motion_of(states).residual[k]
         motion = motion_of(states)
         assert np.abs(motion.residual).max() < 1e-9

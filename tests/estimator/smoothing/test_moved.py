@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from estimator.estimate import NodeEstimate, Notice
+from estimator.fusion.ledger import RANGE
+from estimator.fusion.state import FusionState
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
@@ -15,7 +17,10 @@ from estimator.measurements.position import Position
 from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
 from estimator.simulate import Scenario, scenario
+from estimator.smoothing.elsewhere import READINGS_MIN
+from estimator.trackers.base import TrackerSettings
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from estimator.trackers.lag import Lag
 
 AGAIN_M = 15.0
 """A breadcrumb's place is told by who comes so near: farther away 4 m are within the noise of its signal."""
@@ -77,6 +82,21 @@ def test_a_kicked_breadcrumb_costs_its_neighbours_no_more_than_a_metre(seed: int
     for name in ("ff1", "ff2"):
         kicked, silent = off_m(shown, tracks[name], name), off_m(shown, without[name], name)
         assert max(kicked[t] - silent[t] for t in kicked if t in silent) <= 1.0
+
+
+@pytest.mark.parametrize("seed", [4, 5])
+def test_the_first_ranges_to_a_kicked_breadcrumb_are_of_its_new_place(seed: int) -> None:
+    """Those that bent the way of who passed would go on bending it."""
+    shown = scenario("kicked-breadcrumb", seed)
+    lag = Lag(TrackerSettings().lag_s, FusionState())
+    lag.add([r.reading for r in sorted(shown.reports, key=lambda r: r.reading.t) if r.reading.t <= 250.0])
+    state = lag.state()
+    pairs, new = state.ledger.table("pairs"), state.nodes["b3"].index
+    old = state.owners.index("b3")
+    near = pairs[(pairs[:, 1] == RANGE) & (pairs[:, 0] > 235.0)]
+    assert new != old
+    assert (near[:, 2:4] == new).any(axis=1).sum() >= READINGS_MIN
+    assert not (near[:, 2:4] == old).any()
 
 
 def test_the_kicked_breadcrumb_is_then_shown_where_it_lies() -> None:
