@@ -25,6 +25,7 @@ from estimator.smoothing.chosen import choose
 from estimator.smoothing.ends import Nodes, Table, place_ends, stand
 from estimator.smoothing.learn import noise_scores
 from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals
+from estimator.smoothing.obstructed import excess
 from estimator.smoothing.slips import gains, unsure
 from estimator.smoothing.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
 from estimator.smoothing.ways import Laid, Way
@@ -85,6 +86,7 @@ def _warm_chain() -> None:
     residuals(readings, x)
     add_unsure(jacobians(readings, x), place, place, place, place, np.ones(5))
     apart(readings, x)
+    excess(slab, one, one)
     add_bends(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
 
 

@@ -4,9 +4,9 @@ Physics leaves most of them a span. Some were chosen among what is plausible wit
 public sets plaza1, danis and hanyang, and the scenarios of `estimator.simulate`. Accuracy on these is
 therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M`, `SCALE_SIGMA`,
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
-`FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE`, `WALL_M`, and that the spread of gyro
-biases is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm. M marks what
-estimation.md reports as measured.
+`FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE`, `WALL_M`, `EXCESS_M` and the two after
+it, and that the spread of gyro biases is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm. M
+marks what estimation.md reports as measured.
 
 Some stand in compiled functions, which keep the number that they were compiled with: after a change remove
 `__pycache__` (decision 0007).
@@ -125,6 +125,12 @@ makes ranges half a metre too long. That is no noise: taken for it, many such re
 WALL_M = 0.1
 """Between two radios inside there are walls, furniture and bodies: so much of a range's error stays while
 nobody moves, however little readings that follow each other differ."""
+EXCESS_M = (0.25, 0.5, 1.0)
+"""What ranges through a light wall, several, or heavy ones are too long by: so much they scatter, too."""
+EXCESS_COUNTS = (100.0, 2.0, 2.0, 2.0)
+"""How many readings the usual shares count as, of links in sight first: most are, until readings tell."""
+EXCESS_UNSURE = 0.5
+"""By so much of it what ranges are too long by may differ from what they scatter by."""
 OUTSIDE_ROLES = frozenset({"uav", "anchor"})
 
 BEARING_SIGMA_RAD = 0.2

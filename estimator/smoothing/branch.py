@@ -1,5 +1,8 @@
-"""A node that lies elsewhere begins anew there (estimation.md, point 9)."""
+"""A node that lies elsewhere begins anew there (estimation.md, point 9), until more is known."""
 
+import math
+
+import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion.state import FusionState
@@ -26,6 +29,49 @@ def branch(state: FusionState, moved: Moved) -> None:
     state.tried.pop(moved.name, None)
     text = f"{moved.name} lies elsewhere than it did: it was kicked or carried"
     state.say("node_moved", state.newest_t, moved.name, text)
+
+
+def reunite(state: FusionState) -> None:
+    """Take back that readings put standing nodes elsewhere: whoever knows more is to judge it again.
+
+    What was dropped anew stays so. Nodes stand where they were said to lie at first.
+
+    Args:
+        state: the fusion, changed in place.
+    """
+    homes = _homes(state)
+    moved = [number for number, home in enumerate(homes) if home != number]
+    if not moved:
+        return
+    stands, pairs = state.ledger.table("stands"), state.ledger.table("pairs")
+    for number in moved:
+        pairs = renumber(pairs, number, homes[number], -math.inf)
+    state.ledger.replace("pairs", pairs)
+    state.ledger.replace("stands", stands[~np.isin(stands[:, 1], moved)])
+    for name, node in list(state.nodes.items()):
+        if node.index not in moved:
+            continue
+        home, mode = homes[node.index], node.mode
+        if mode == "static":
+            state.graph.delete_nodes([node.position])
+        if mode in ("static", "undecided"):
+            lay = stands[stands[:, 1] == home][0]
+            state.graph.add_node(node.position, lay[2:5], lay[5:8])
+            mode = "static"
+        state.nodes[name] = replace(node, index=home, mode=mode)
+        state.sightings.pop(name, None)
+
+
+def _homes(state: FusionState) -> list[int]:
+    """Of each number in the ledger that under which its node was introduced, or dropped, at last before."""
+    dropped = set(state.ledger.table("drops")[:, 1].astype(int).tolist())
+    homes: list[int] = []
+    newest: dict[str, int] = {}
+    for number, name in enumerate(state.owners):
+        if number in dropped or name not in newest:
+            newest[name] = number
+        homes.append(newest[name])
+    return homes
 
 
 def renumber(pairs: Array, old: int, new: int, since_t: float) -> Array:

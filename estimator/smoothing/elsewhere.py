@@ -109,7 +109,7 @@ def seen_of(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -
     sought = Sought(
         kind=kind,
         points=np.where(here[:, None], b[mine], a[mine]),
-        value=rows.pairs[mine, 4] - rows.pairs[mine, 7],
+        value=rows.pairs[mine, 4] - rows.pairs[mine, 7] - rows.shift[mine],
         sigma=np.hypot(rows.sigma[mine], UNSURE_M) if kind == "range" else rows.sigma[mine],
         up_m=float(place[2]),
         up_sigma_m=UP_SIGMA_M,

@@ -127,7 +127,7 @@ def _row(state: FusionState, rows: Rows, solved: Solved, i: int, share: float) -
         a=a,
         b=b,
         value=float(value),
-        residual=float(solved.linear.residual[i]),
+        residual=float(solved.linear.residual[i] + rows.shift[i]),
         sigma=float(rows.sigma[i]),
         weight=float(solved.weighted.good[i]),
         share=share,

@@ -17,9 +17,22 @@ from estimator.smoothing.encounters import candidates, near_dbm
 from estimator.smoothing.ends import FREE, UNIT, Ends, nodes_of, place_ends
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals
+from estimator.smoothing.obstructed import excess
 
 DROP = len(physics.NOISES) - 1
 NOISES = np.array(physics.NOISES)
+
+
+def sigma_of(white: Array, common: Array, alike: Array) -> Array:
+    """Standard deviations to give to readings that share a part of their error: `fusion.noise.link_sigma`.
+
+    Args:
+        white: variance that each has for itself, m.
+        common: variance that is shared, m.
+        alike: which number in its row of alike readings each is, m.
+    """
+    before, now = white + (alike - 1.0) * common, white + alike * common
+    return np.asarray(np.maximum(np.sqrt(before * now / white), physics.SIGMA_FLOOR_M))
 
 
 class Linearised(NamedTuple):
@@ -27,7 +40,7 @@ class Linearised(NamedTuple):
 
     Attributes:
         jacobian: derivatives, m × 14.
-        residual: z − h(x), m.
+        residual: z − h(x) − shift, m.
     """
 
     jacobian: Array
@@ -42,6 +55,7 @@ class Rows:
         slab: keyframe of each row, m.
         columns: what each depends on, m × 14, as `graph.kernels.scatter_rows` takes it.
         sigma: standard deviation of the good noise, m.
+        shift: what they are thought to be too long by, m.
         noise: outliers, shift and spread of each, m × 3.
         nominal: claimed or assumed standard deviation, m.
         source: number of the technology, m; −1: none.
@@ -79,7 +93,8 @@ class Rows:
         heard = self.pairs[rssi]
         self._strongest[rssi] = candidates(heard[:, 0], heard[:, 9], heard[:, 4])
         self.sigma: Array = self.nominal.copy()
-        self._told: Array = self.sigma
+        self.shift: Array = np.zeros(len(self.nominal))
+        self._told = self._white = self._common = self.sigma
         self.t: Array = np.concatenate([self.pairs[:, 0], self.singles[:, 0], np.repeat(self.drops[:, 0], 3)])
         size = layout.length * layout.width
         self._bearings = np.flatnonzero(self.pairs[:, 1] >= BEARING)
@@ -156,10 +171,26 @@ class Rows:
         total = (self.nominal * factor) ** 2
         white = (1.0 - shared) * total
         common = total - white + stays**2
-        before, now = white + (self.alike - 1.0) * common, white + self.alike * common
-        single = np.maximum(np.sqrt(before * now / white), physics.SIGMA_FLOOR_M)
-        self._told = np.where(self.source >= 0, single, self.nominal)
+        self._told = np.where(self.source >= 0, sigma_of(white, common, self.alike), self.nominal)
+        self._white, self._common = white, common
         self.sigma = self._told.copy()
+
+    def obstruct(self, x: Array) -> None:
+        """Tell by how ranges scatter on their links what they are too long by: see `smoothing.obstructed`.
+
+        Args:
+            x: an estimate, flat, in which no node that was moved is thought to be where it was.
+        """
+        m = len(self.pairs)
+        self.shift = np.zeros(len(self.nominal))
+        way, off = apart(self._readings, x), residuals(self._readings, x)
+        among = self._inside & (self.pairs[:, 1] == RANGE) & (np.abs(way[:, 2]) <= physics.FLOOR_M)
+        for source in np.unique(self.source[:m][among]):
+            at = np.flatnonzero(among & (self.source[:m] == source))
+            found = excess(self.pairs[at, 9].astype(np.int64), self.alike[at], off[at])
+            self.shift[at] = found.mean_m
+            white, common = self._white[at] + found.scatter_m2, self._common[at] + found.doubt_m2
+            self._told[at] = sigma_of(white, common, self.alike[at])
 
     def widen(self, x: Array, jacobian: Array) -> None:
         """What the estimate says of each reading's noise.
@@ -213,8 +244,8 @@ class Rows:
         return Linearised(self.jacobian(x), self.residual(x))
 
     def residual(self, x: Array) -> Array:
-        """Residuals z − h(x) at an estimate x, flat."""
-        found = residuals(self._readings, x)
+        """Residuals z − h(x) − shift at an estimate x, flat."""
+        found = residuals(self._readings, x) - self.shift
         found[self._bearings] = wrap(found[self._bearings])
         return found
 

@@ -179,6 +179,17 @@ def _agreed(problem: Problem, solved: Solved, slip: Slip, gain: float) -> bool:
     return bool(rest > 0.0 and gain * (rest / pull.sum()) ** 2 > ELSE)
 
 
+def withdraw(state: FusionState) -> None:
+    """Take back all slips: whoever knows more is to judge them again.
+
+    Args:
+        state: its ledger loses the steps without displacement or time that stand for them.
+    """
+    steps = state.ledger.table("steps")
+    slipped = (steps[:, 0] == steps[:, 2]) & (steps[:, 6] == physics.SLIP_M**2)
+    state.ledger.replace("steps", steps[~slipped])
+
+
 def admit(state: FusionState, slips: list[Slip]) -> None:
     """Let the ledger's steps be as uncertain as slips are, where they have been found.
 

@@ -16,7 +16,7 @@ from estimator.fusion.state import FusionState
 from estimator.fusion.tick import flush, fold_tick, keep_poses, names_of
 from estimator.measurements import AnyReading
 from estimator.smoothing.advice import advise
-from estimator.smoothing.branch import branch
+from estimator.smoothing.branch import branch, reunite
 from estimator.smoothing.evidence import explain
 from estimator.smoothing.extent import spacing_s as usual_s
 from estimator.smoothing.layout import Layout
@@ -24,7 +24,8 @@ from estimator.smoothing.learn import learn
 from estimator.smoothing.moved import Moved, moved_nodes
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.settle import keep_keyframes, settle
-from estimator.smoothing.solve import Problem
+from estimator.smoothing.slips import withdraw
+from estimator.smoothing.solve import RESTING, Problem
 from estimator.smoothing.solved import Solved
 from estimator.smoothing.tracks import tracks
 from estimator.smoothing.window import keep_up
@@ -40,7 +41,7 @@ LONGEST_S = 86_400.0
 TICK_S = 2.0
 """The first pass only finds where to start: its ticks are longer than the online tracker's. In still longer
 ones a node moves too far for the noise that is learned on the way."""
-RARER = 32.0
+RARER = 64.0
 """The first pass only finds where to start: its window is solved this many times more rarely."""
 MOVES = 20
 """So many nodes at most are found elsewhere: each asks for another solution."""
@@ -98,8 +99,10 @@ def in_order(readings: Sequence[AnyReading]) -> list[AnyReading]:
 def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     """Solve everything, learning on the way how noisy each unit is.
 
-    Whether a technology is calibrated the first pass has judged. The same walls, met again and again for
-    hours, look like a scale that is surer and surer.
+    Which breadcrumbs were moved, and then which steps were reported wrongly, is asked again with all that is
+    known: the first pass may have taken the one for the other, or a later epoch for that of a kick. Whether a
+    technology is calibrated the first pass has judged. The same walls, met again and again for hours, look
+    like a scale that is surer and surer.
 
     Args:
         state: the fusion after all readings, with a complete ledger.
@@ -107,31 +110,45 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     begins = state.ledger.table("begins")
     since_t = float(begins[:, 0].min()) if len(begins) else state.newest_t
     spacing = spacing_s(state, since_t, state.newest_t)
+    withdraw(state)
+    reunite(state)
     layout = Layout(state, since_t, spacing)
-    rows = _rows(layout)
-    problem = Problem(layout, rows, None)
+    problem = Problem(layout, _rows(layout), None)
     solved = problem.solve(layout.start(), SLACKS_M, resting=LEARNING_RESTING)
+    problem, solved = _settled(state, problem, solved, LEARNING_RESTING)
+    rows = problem.rows
     first, *later = LEARNING
     learn(state, problem, solved, first, kinds=False)
     for most in later:
         problem = Problem(Layout(state, since_t, spacing), rows, None)
         solved = problem.solve(solved.x, iterations=1)
         learn(state, problem, solved, most, kinds=False)
-    problem = _problem(state, since_t, spacing)
-    solved = problem.solve(solved.x)
+    layout = Layout(state, since_t, spacing)
+    problem = Problem(layout, _rows(layout), None)
+    problem, solved = _settled(state, problem, problem.solve(solved.x), RESTING)
+    # Last, for a node that was moved makes ranges differ like a wall.
+    problem.rows.obstruct(solved.x)
+    return problem, problem.solve(solved.x) if problem.rows.shift.any() else solved
+
+
+def _settled(state: FusionState, problem: Problem, solved: Solved, resting: float) -> tuple[Problem, Solved]:
+    """The solution with all nodes that were moved where they lie.
+
+    Args:
+        state: the fusion; nodes that were moved begin anew in it.
+        problem: of the whole incident.
+        solved: its solution with them where they were thought to be.
+        resting: see `Problem.solve`.
+    """
     for _ in range(MOVES):
         moves, _ = moved_nodes(problem, solved, math.inf)
         if not moves:
             break
         _begin_elsewhere(state, problem, solved, moves)
-        problem = _problem(state, since_t, spacing)
-        solved = problem.solve(problem.layout.start(), SLACKS_M)
+        layout = Layout(state, problem.layout.since_t, problem.layout.spacing_s)
+        problem = Problem(layout, _rows(layout), None)
+        solved = problem.solve(layout.start(), SLACKS_M, resting=resting)
     return problem, solved
-
-
-def _problem(state: FusionState, since_t: float, spacing: float) -> Problem:
-    layout = Layout(state, since_t, spacing)
-    return Problem(layout, _rows(layout), None)
 
 
 def _rows(layout: Layout) -> Rows:

@@ -11,7 +11,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.slips import Slip, admit, doubts_of, find_slips, gains, unsure
+from estimator.smoothing.slips import Slip, admit, doubts_of, find_slips, gains, unsure, withdraw
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.smoothing.windows import entered, fused, problem_of, unlikelihood
 
@@ -100,6 +100,17 @@ def test_a_step_that_is_known_to_have_slipped_is_found_no_more() -> None:
     assert math.hypot(slip.off_m[0] + 1.0, slip.off_m[1]) < 0.4
     admit(state, [slip])
     assert slips_of(state) == []
+
+
+def test_slips_that_are_taken_back_leave_the_steps_as_they_were_reported() -> None:
+    state = fused(walk(slipped=(1.0, 0.5)))
+    withdraw(state)
+    reported = state.ledger.table("steps").copy()
+    admit(state, [Slip(1, 20.0, (1.0, 0.0)), Slip(1, 60.0, (0.0, 1.0))])
+    assert len(state.ledger.table("steps")) == len(reported) + 2
+    withdraw(state)
+    assert (state.ledger.table("steps") == reported).all()
+    assert len(reported) == SECONDS
 
 
 def test_the_gain_is_what_the_slip_adds_to_the_marginal_likelihood() -> None:

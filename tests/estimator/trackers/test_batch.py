@@ -145,3 +145,13 @@ def test_walls_that_are_met_again_for_two_hours_are_not_taken_for_a_scale_of_all
             true.append(shown.truth[name].at(np.array([p.t for p in points])))
     said = errors(np.array(found), np.concatenate(true), full_covariance(np.array(covariance)), 1000.0)
     assert said.nees < 4.0
+
+
+def test_the_smoothed_view_asks_again_when_a_breadcrumb_was_kicked() -> None:
+    """The first pass finds this kick five minutes late, when who passed it is already shown elsewhere."""
+    shown = scenario("office-fire", 7)
+    tracks = BatchSmoother().smooth(list(shown.readings))
+    track = [p for p in tracks["E7-1"] if 500.0 < p.t < 720.0]
+    true = shown.truth["E7-1"].at(np.array([p.t for p in track]))
+    off_m = np.hypot(*(np.array([p.position_m for p in track]) - true)[:, :2].T)
+    assert off_m.max() < 1.0

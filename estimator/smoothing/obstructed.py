@@ -1,0 +1,170 @@
+"""What ranges are too long by where something stands between two radios, told by how much they scatter.
+
+A range through walls takes now one path and now another. What it is too long by is about exponential: as much
+in the mean as it scatters (Wylie and Holtzman, The non-line of sight problem in mobile location estimation,
+ICUPC 1996; Chen, A non-line-of-sight error mitigation algorithm in location estimation, WCNC 1999). Lengths
+alone do not tell it, for the map bends until they fit. What no map explains is that readings which follow
+each other on a link differ (von Neumann, Distribution of the ratio of the mean square successive difference
+to the variance, 1941). A breadcrumb that was moved makes them differ as well: which were is asked before. An
+obstruction that does not scatter is not seen here.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from estimator.fusion import physics
+from estimator.graph.dense import Array
+from estimator.graph.kernels import Integers
+
+SHARED = 0.3
+"""Readings that share less of their error look through other walls: they do not tell of each other."""
+EACH = 2.0 / 3.0
+"""How much a difference tells of a variance, in readings: each reading is in two of them."""
+GLITCH, GLITCH_M, GLITCHES = 0.02, 3.0, 2
+"""How often a reading is odd by itself, and by how much; and how many make one difference."""
+ODD = 6.0
+"""In sigmas: one that differs by more does not tell how noisy a radio is."""
+FEW, COUNTED = 50, 20.0
+"""So many readings tell of nothing; and as so many counts what was thought of a clear link's noise before."""
+ROUNDS, SETTLED = 20, 0.01
+BEGIN, HALF = (1.0, 0.1), 0.6745
+"""It begins at so much of what the nearer half of all readings tells, which lies within so many sigmas. Among
+walls a noise that begins large explains them all; where it begins small, a noisy radio is a wall."""
+
+
+class Excess(NamedTuple):
+    """What each of m ranges is too long by.
+
+    Attributes:
+        mean_m: m (m).
+        scatter_m2: variance that each has for itself, m (m²).
+        doubt_m2: variance that readings of one link share, m (m²).
+    """
+
+    mean_m: Array
+    scatter_m2: Array
+    doubt_m2: Array
+
+
+def excess(link: Integers, alike: Array, residual: Array) -> Excess:
+    """What ranges of one technology are too long by.
+
+    Args:
+        link: number of each one's link, m; readings of a link in order of epoch.
+        alike: which number in its row of alike readings each is, m: see `fusion.links`.
+        residual: measured less predicted, m (m): only how it scatters on a link counts.
+    """
+    rungs, counts = np.array((0.0, *physics.EXCESS_M)), np.array(physics.EXCESS_COUNTS)
+    odds = _odds(link, alike, residual, rungs, counts)
+    mean = odds @ rungs
+    squared = odds @ rungs**2
+    return Excess(mean, squared, squared - mean**2 + (physics.EXCESS_UNSURE * mean) ** 2)
+
+
+@njit(cache=True)
+def _odds(link: Integers, alike: Array, residual: Array, rungs: Array, counts: Array) -> Array:
+    """Probability of each excess for each reading, m × rungs: the likelier of what two beginnings lead to."""
+    before, kept, off = _differences(link, alike, residual)
+    felt = np.flatnonzero(~np.isnan(off))
+    odds, best = np.zeros((len(link), len(rungs))), -math.inf
+    odds[:, 0] = 1.0
+    if len(felt) < FEW:
+        return odds
+    usual = max(np.median(np.abs(off[felt])) / HALF, physics.SIGMA_FLOOR_M)
+    for begin in BEGIN:
+        found, likely = _settle(before, kept, off, felt, begin * usual, rungs, counts)
+        if likely > best:
+            odds, best = found, likely
+    return odds
+
+
+@njit(cache=True)
+def _settle(
+    before: Integers, kept: Array, off: Array, felt: Integers, sigma: float, rungs: Array, counts: Array
+) -> tuple[Array, float]:
+    """Those odds by expectation and maximisation, and how likely the differences are with them.
+
+    Learned on the way: the noise of a clear link, and how common each excess is.
+    """
+    m, n = len(before), len(rungs)
+    odds, share = np.zeros((m, n)), counts / counts.sum()
+    told, onward, back = np.zeros((m, n)), np.zeros((m, n)), np.zeros((m, n))
+    for _ in range(ROUNDS):
+        for k in felt:
+            for r in range(n):
+                told[k, r] = EACH * _log_density(off[k], sigma, rungs[r])
+        back[:] = 0.0
+        _carry(before, kept, told, onward, back)
+        for i in range(m):
+            most = -math.inf
+            for r in range(n):
+                # What scatters less than the radio itself is not seen.
+                seen = r == 0 or rungs[r] >= sigma
+                odds[i, r] = onward[i, r] + back[i, r] + math.log(share[r]) if seen else -math.inf
+                most = max(most, odds[i, r])
+            for r in range(n):
+                odds[i, r] = math.exp(odds[i, r] - most)
+            odds[i] /= odds[i].sum()
+        common, squares, clear = counts.copy(), COUNTED * sigma**2, COUNTED
+        for k in felt:
+            common += odds[k]
+            if abs(off[k]) < ODD * sigma:
+                squares += odds[k, 0] * off[k] ** 2
+                clear += odds[k, 0]
+        known, share = share, common / common.sum()
+        was, sigma = sigma, max(math.sqrt(squares / clear), physics.SIGMA_FLOOR_M)
+        if abs(sigma - was) < SETTLED * was and np.abs(share - known).max() < SETTLED:
+            break
+    likely = float((counts * np.log(share)).sum())
+    for k in felt:
+        density = 0.0
+        for r in range(n):
+            density += share[r] * math.exp(_log_density(off[k], sigma, rungs[r]))
+        likely += EACH * math.log(density)
+    return odds, likely
+
+
+@njit(cache=True)
+def _carry(before: Integers, kept: Array, told: Array, onward: Array, back: Array) -> None:
+    """Sum up along each link, there and back, what is told of it: that fades as its error does."""
+    m, n = told.shape
+    for i in range(m):
+        for r in range(n):
+            onward[i, r] = told[i, r] + (kept[i] * onward[before[i], r] if before[i] >= 0 else 0.0)
+    for i in range(m - 1, -1, -1):
+        for r in range(n if before[i] >= 0 else 0):
+            back[before[i], r] = kept[i] * (told[i, r] + back[i, r])
+
+
+@njit(cache=True)
+def _differences(link: Integers, alike: Array, residual: Array) -> tuple[Integers, Array, Array]:
+    """What precedes each reading on its link, and how it differs from that.
+
+    Returns:
+        The reading before it (−1: none), m; what it shares of that one's error, 0 to 1, m; how it differs, as
+        noisy as one reading, NaN where it shares too little, m (m).
+    """
+    m = len(link)
+    newest = np.full(link.max() + 1 if m else 0, -1)
+    before, kept, off = np.full(m, -1), np.zeros(m), np.full(m, np.nan)
+    for i in range(m):
+        last = newest[link[i]]
+        newest[link[i]], before[i] = i, last
+        if last >= 0:
+            kept[i] = min(max((alike[i] - 1.0) / alike[last], 0.0), 1.0)
+            if kept[i] > SHARED:
+                off[i] = (residual[i] - residual[last]) / math.sqrt(2.0)
+    return before, kept, off
+
+
+@njit(cache=True)
+def _log_density(off: float, sigma: float, rung: float) -> float:
+    """Of a difference between readings whose excess has a standard deviation, up to a constant."""
+    usual = sigma * sigma + rung * rung
+    odd = usual + GLITCH_M * GLITCH_M
+    density = (1.0 - GLITCHES * GLITCH) * math.exp(-0.5 * off * off / usual) / math.sqrt(usual)
+    density += GLITCHES * GLITCH * math.exp(-0.5 * off * off / odd) / math.sqrt(odd)
+    return math.log(max(density, 1e-300))
