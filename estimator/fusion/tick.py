@@ -110,8 +110,8 @@ def keep_poses(state: FusionState) -> None:
 def flush(state: FusionState) -> None:
     """Hold what waits for a displacement against the newest positions: for a picture, on a copy."""
     waiting, state.waiting = state.waiting, ()
-    if waiting:
-        _hold(state, waiting, [])
+    for part in _parts(state, waiting) if waiting else ():
+        _hold(state, part, [])
 
 
 def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Single]) -> None:
@@ -152,19 +152,24 @@ def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Sing
 
 
 def _parts(state: FusionState, readings: Sequence[AnyReading]) -> list[Sequence[AnyReading]]:
-    """Readings that are held together: all, but by parts of the tick where a node without PDR is among them.
+    """Readings that are held together: all, but by parts of a tick where nobody knows how someone has moved.
 
-    A unit's own way tells where it stood at each epoch; a velocity that changes does so for a moment only.
+    A unit's own way tells where it stood at each epoch that it covers. A velocity that changes tells so for a
+    moment only, and of who is silent nothing is told: held at one epoch, seconds of his readings would show
+    him where he was on average, and sure of it.
     """
     loose = {
         n.node for n in state.nodes.values() if n.role in MOVING_ROLES and n.mode in ("free", "undecided")
     }
-    if not loose:
+    covered = {n.node: n.pose_t + SAME_EPOCH_S for n in state.nodes.values() if n.mode == "unit"}
+    soonest = min(covered.values(), default=math.inf)
+    if not loose and all(reading.t <= soonest for reading in readings):
         return [readings]
     together: list[AnyReading] = []
     parts: dict[int, list[AnyReading]] = {}
     for reading in readings:
-        if loose.isdisjoint(names_of(reading)):
+        names = names_of(reading)
+        if loose.isdisjoint(names) and reading.t <= min(covered.get(name, math.inf) for name in names):
             together.append(reading)
         else:
             parts.setdefault(int(reading.t / physics.FREE_TICK_S), []).append(reading)

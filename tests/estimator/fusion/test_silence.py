@@ -12,9 +12,13 @@ from estimator.fusion.introduce import attach_unit
 from estimator.fusion.silence import wandered_m2
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import fold_tick
+from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.position import Position
+from estimator.measurements.range import Range
+from estimator.trackers.base import TrackerSettings
+from estimator.trackers.kirchhoff import KirchhoffTracker
 
 
 @pytest.mark.parametrize("silent_s", [0.2, 1.0, 5.0])
@@ -83,3 +87,28 @@ def test_a_unit_whose_first_displacement_came_too_late_is_followed_as_any_silent
         fold_tick(state, 0.1 * tenth + physics.PENDING_S + 1.0, [fix])
     rows = state.graph.rows(state.nodes["ff1"].position)
     assert float(np.sqrt(state.graph.covariance()[rows, rows][0, 0])) > 2.5
+
+
+def test_who_walks_on_when_his_unit_falls_silent_is_shown_where_he_is_heard() -> None:
+    """Seconds of ranges wait for displacements that may still come: they were made at different places."""
+    chance = np.random.default_rng(6)
+    corners = {"a1": (0.0, 0.0), "a2": (40.0, 0.0), "a3": (0.0, 30.0), "a4": (40.0, 30.0)}
+    tracker = KirchhoffTracker(TrackerSettings())
+    tracker.fold([Node(t=0.0, node=n, role="anchor", position_m=(*m, 0.0)) for n, m in corners.items()])
+    tracker.fold([Node(t=0.0, node="ff1", role="responder", position_m=(5.0, 10.0, 0.0), sigma_m=0.3)])
+    for second in range(1, 31):
+        t, at = float(second), np.array([5.0 + second, 10.0])
+        seen: list[AnyReading] = []
+        if second <= 15:
+            e, n = (np.array([1.0, 0.0]) + chance.normal(0.0, 0.03, 2)).tolist()
+            seen.append(Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=(e, n, 0.0)))
+        for name, place in corners.items():
+            range_m = float(np.hypot(*(at - place)) + chance.normal(0.0, 0.1))
+            seen.append(Range(t=t, a="ff1", b=name, range_m=range_m, technology="uwb"))
+        tracker.fold(seen)
+        found = {e.node: e for e in tracker.estimates()}["ff1"]
+        assert found.position_m is not None
+        assert found.covariance_m2 is not None
+        off_m = np.hypot(found.position_m[0] - 5.0 - found.t, found.position_m[1] - 10.0)
+        assert off_m < 1.2
+        assert off_m < 4.0 * math.sqrt(found.covariance_m2[0] + found.covariance_m2[3])
