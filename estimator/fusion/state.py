@@ -128,11 +128,9 @@ class FusionState:
         return np.array(node.place_m) if node.place_m is not None else self.graph.value(node.position)
 
     def base_place(self) -> Vector3:
-        """Where the base stands: the origin, unless it says otherwise."""
-        for node in self.nodes.values():
-            if node.role == "base" and node.place_m is not None:
-                return node.place_m
-        return (0.0, 0.0, 0.0)
+        """Where the base stands, or stood if all are retired: the origin, unless it says otherwise."""
+        bases = [(n.mode == "retired", n.index, n.place_m) for n in self.nodes.values() if n.role == "base"]
+        return min(bases, default=(False, 0, None))[2] or (0.0, 0.0, 0.0)
 
     def bias_sigma_radps(self, node: NodeState) -> float:
         """Standard deviation of the prior of the gyro bias of a node's unit (rad/s)."""

@@ -5,8 +5,11 @@ import math
 import numpy as np
 from msgspec.structs import replace
 
+from estimator.fusion.introduce import NO_PRIOR_SIGMA_M
+from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
+from estimator.measurements.node import MOVING_ROLES
 from estimator.smoothing.moved import Moved
 
 
@@ -31,47 +34,42 @@ def branch(state: FusionState, moved: Moved) -> None:
     state.say("node_moved", state.newest_t, moved.name, text)
 
 
-def reunite(state: FusionState) -> None:
-    """Take back that readings put standing nodes elsewhere: whoever knows more is to judge it again.
+def reunite(state: FusionState) -> bool:
+    """Take back where readings have put standing nodes last: whoever knows more may judge it otherwise.
 
-    What was dropped anew stays so. Nodes stand where they were said to lie at first.
+    What was dropped, placed or fixed there stays there, and what was kicked before that.
 
     Args:
-        state: the fusion, changed in place.
+        state: the fusion, changed in place; these nodes stand where they were said to lie at first.
+
+    Returns:
+        Whether there were any.
     """
-    homes = _homes(state)
-    moved = [number for number, home in enumerate(homes) if home != number]
-    if not moved:
-        return
-    stands, pairs = state.ledger.table("stands"), state.ledger.table("pairs")
-    for number in moved:
-        pairs = renumber(pairs, number, homes[number], -math.inf)
-    state.ledger.replace("pairs", pairs)
-    state.ledger.replace("stands", stands[~np.isin(stands[:, 1], moved)])
+    told = {*state.ledger.table("drops")[:, 1].tolist(), *state.ledger.table("singles")[:, 1].tolist()}
+    taken = False
     for name, node in list(state.nodes.items()):
-        if node.index not in moved:
+        stands = state.ledger.table("stands")
+        lay = stands[np.isin(stands[:, 1], _before(state, node))]
+        lies = stands[stands[:, 1] == node.index]
+        placed = (lies[:, 5] < NO_PRIOR_SIGMA_M).any() or node.index in told
+        if node.mode not in ("static", "undecided") or node.role in MOVING_ROLES or placed or not len(lay):
             continue
-        home, mode = homes[node.index], node.mode
-        if mode == "static":
+        home = int(lay[0, 1])
+        pairs = renumber(state.ledger.table("pairs"), node.index, home, -math.inf)
+        state.ledger.replace("pairs", pairs)
+        state.ledger.replace("stands", stands[stands[:, 1] != node.index])
+        if node.mode == "static":
             state.graph.delete_nodes([node.position])
-        if mode in ("static", "undecided"):
-            lay = stands[stands[:, 1] == home][0]
-            state.graph.add_node(node.position, lay[2:5], lay[5:8])
-            mode = "static"
-        state.nodes[name] = replace(node, index=home, mode=mode)
+        state.graph.add_node(node.position, lay[0, 2:5], lay[0, 5:8])
+        state.nodes[name] = replace(node, index=home, mode="static")
         state.sightings.pop(name, None)
+        taken = True
+    return taken
 
 
-def _homes(state: FusionState) -> list[int]:
-    """Of each number in the ledger that under which its node was introduced, or dropped, at last before."""
-    dropped = set(state.ledger.table("drops")[:, 1].astype(int).tolist())
-    homes: list[int] = []
-    newest: dict[str, int] = {}
-    for number, name in enumerate(state.owners):
-        if number in dropped or name not in newest:
-            newest[name] = number
-        homes.append(newest[name])
-    return homes
+def _before(state: FusionState, node: NodeState) -> list[int]:
+    """The number that a node had before the one that it has: none, or one."""
+    return [number for number in range(node.index) if state.owners[number] == node.node][-1:]
 
 
 def renumber(pairs: Array, old: int, new: int, since_t: float) -> Array:

@@ -20,7 +20,7 @@ from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 
 SHARED = 0.3
-"""Readings that share less of their error look through other walls: they do not tell of each other."""
+"""Readings that share less of their error look through other walls: how they differ tells nothing."""
 EACH = 2.0 / 3.0
 """How much a difference tells of a variance, in readings: each reading is in two of them."""
 GLITCH, GLITCH_M, GLITCHES = 0.02, 3.0, 2

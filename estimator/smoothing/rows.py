@@ -94,7 +94,8 @@ class Rows:
         self._strongest[rssi] = candidates(heard[:, 0], heard[:, 9], heard[:, 4])
         self.sigma: Array = self.nominal.copy()
         self.shift: Array = np.zeros(len(self.nominal))
-        self._told = self._white = self._common = self.sigma
+        self._told = self.sigma
+        self._white, self._common = self.nominal**2, np.zeros(len(self.nominal))
         self.t: Array = np.concatenate([self.pairs[:, 0], self.singles[:, 0], np.repeat(self.drops[:, 0], 3)])
         size = layout.length * layout.width
         self._bearings = np.flatnonzero(self.pairs[:, 1] >= BEARING)

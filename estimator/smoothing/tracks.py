@@ -69,9 +69,13 @@ def _lay(layout: Layout, drops: Mapping[int, float]) -> dict[int, tuple[float, f
         drops: epochs of drops, by number (s).
     """
     pairs, owners = layout.state.ledger.table("pairs"), layout.state.owners
+    stood = {*layout.state.ledger.table("stands")[:, 1].tolist(), *pairs[:, 2:4].ravel().tolist()}
     found: dict[int, tuple[float, float]] = {}
     last_of: dict[str, int] = {}
     for number, name in enumerate(owners):
+        if name in last_of and number not in stood:
+            # That it lay elsewhere was taken back.
+            continue
         if name in last_of:
             own = pairs[(pairs[:, 2] == number) | (pairs[:, 3] == number), 0]
             moved_t = drops.get(number, float(own.min()) if len(own) else math.inf)

@@ -7,6 +7,8 @@ keyframes are solved together (`estimator.smoothing`).
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from estimator.estimate import TrackPoint
 from estimator.evidence import Advice, Evidence
 from estimator.fusion.beginnings import decide
@@ -14,9 +16,11 @@ from estimator.fusion.ledger import Ledger
 from estimator.fusion.order import place_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import flush, fold_tick, keep_poses, names_of
+from estimator.graph.robust import mixture_cost
 from estimator.measurements import AnyReading
 from estimator.smoothing.advice import advise
 from estimator.smoothing.branch import branch, reunite
+from estimator.smoothing.elsewhere import GAIN
 from estimator.smoothing.evidence import explain
 from estimator.smoothing.extent import spacing_s as usual_s
 from estimator.smoothing.layout import Layout
@@ -41,10 +45,10 @@ LONGEST_S = 86_400.0
 TICK_S = 2.0
 """The first pass only finds where to start: its ticks are longer than the online tracker's. In still longer
 ones a node moves too far for the noise that is learned on the way."""
-RARER = 64.0
+RARER = 48.0
 """The first pass only finds where to start: its window is solved this many times more rarely."""
 MOVES = 20
-"""So many nodes at most are found elsewhere: each asks for another solution."""
+"""So many nodes at most are found elsewhere at a time: each asks for another solution."""
 LARGEST = 60_000_000
 """Numbers that the chain may hold: beyond it keyframes are set farther apart."""
 
@@ -76,9 +80,10 @@ class BatchSmoother:
             KeyError: there is no such node.
         """
         state = online_pass(in_order(readings), self.settings)
-        if not state.nodes[node].decided or not len(state.ledger.table("begins")):
+        if state.nodes[node].mode == "fixed" or not len(state.ledger.table("begins")):
             return None
-        return explain(state, *solve_whole(state), node)
+        problem, solved = solve_whole(state)
+        return explain(problem.layout.state, problem, solved, node)
 
     def advice(self, readings: Sequence[AnyReading], node: str) -> Advice | None:
         """What would help a node most; see `estimator.smoothing.advice.advise`.
@@ -105,17 +110,18 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     like a scale that is surer and surer.
 
     Args:
-        state: the fusion after all readings, with a complete ledger.
+        state: the fusion after all readings, with a complete ledger; the solution's may be a copy of it.
     """
     begins = state.ledger.table("begins")
     since_t = float(begins[:, 0].min()) if len(begins) else state.newest_t
     spacing = spacing_s(state, since_t, state.newest_t)
     withdraw(state)
-    reunite(state)
-    layout = Layout(state, since_t, spacing)
-    problem = Problem(layout, _rows(layout), None)
-    solved = problem.solve(layout.start(), SLACKS_M, resting=LEARNING_RESTING)
-    problem, solved = _settled(state, problem, solved, LEARNING_RESTING)
+    other = state.copy()
+    begun = [_begun(state, since_t, spacing)]
+    if reunite(other):
+        begun.append(_begun(other, since_t, spacing))
+    problem, solved = min(begun, key=lambda one: _misfit(*one))
+    state = problem.layout.state
     rows = problem.rows
     first, *later = LEARNING
     learn(state, problem, solved, first, kinds=False)
@@ -129,6 +135,24 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     # Last, for a node that was moved makes ranges differ like a wall.
     problem.rows.obstruct(solved.x)
     return problem, problem.solve(solved.x) if problem.rows.shift.any() else solved
+
+
+def _begun(state: FusionState, since_t: float, spacing: float) -> tuple[Problem, Solved]:
+    """A solution that is at rest enough to be learned from, with all nodes that were moved where they lie."""
+    layout = Layout(state, since_t, spacing)
+    problem = Problem(layout, _rows(layout), None)
+    solved = problem.solve(layout.start(), SLACKS_M, resting=LEARNING_RESTING)
+    return _settled(state, problem, solved, LEARNING_RESTING)
+
+
+def _misfit(problem: Problem, solved: Solved) -> float:
+    """How much worse a solution is than one that fits all its readings, in log likelihood.
+
+    Each place that it needs is to be worth what it is worth to find one.
+    """
+    rows = problem.rows
+    at_best = mixture_cost(np.zeros(len(rows.sigma)), rows.sigma, *rows.noise.T)
+    return float(solved.cost - at_best.sum() + GAIN * len(problem.layout.stands))
 
 
 def _settled(state: FusionState, problem: Problem, solved: Solved, resting: float) -> tuple[Problem, Solved]:

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from estimator.fusion.introduce import place, retire
+from estimator.fusion.introduce import NO_PRIOR_SIGMA_M, place, retire
 from estimator.fusion.state import FusionState
+from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop
@@ -15,6 +16,7 @@ from estimator.smoothing.moved import Moved
 from tests.estimator.smoothing.windows import fused
 
 TURNED_S = 30.0
+WIDE_M = (NO_PRIOR_SIGMA_M, NO_PRIOR_SIGMA_M, 1.0)
 
 
 def walked(*more: AnyReading) -> FusionState:
@@ -37,23 +39,16 @@ def numbers_of(state: FusionState) -> set[int]:
     return mine & set(ends)
 
 
-@pytest.mark.parametrize("kicked_s", [(30.0,), (30.0, 45.0)], ids=["once", "twice"])
 @pytest.mark.parametrize("found", [False, True], ids=["still sought", "found"])
-def test_what_was_found_to_lie_elsewhere_is_taken_back_whole(
-    kicked_s: tuple[float, ...], found: bool
-) -> None:
+def test_where_readings_put_it_last_is_taken_back(found: bool) -> None:
     state = walked()
     before, pairs = state.nodes["b1"], state.ledger.table("pairs").copy()
     stands = state.ledger.table("stands").copy()
-    for t in kicked_s:
-        if state.nodes["b1"].mode == "undecided":
-            place(state, state.nodes["b1"], t, (12.0, 3.0, 0.0), (1e3, 1e3, 1.0))
-        branch(state, Moved("b1", t, 15))
+    branch(state, Moved("b1", TURNED_S, 25))
     if found:
-        place(state, state.nodes["b1"], 60.0, (15.0, 3.0, 0.0), (1e3, 1e3, 1.0))
-    assert state.nodes["b1"].index != before.index
-    assert len(numbers_of(state)) == 1 + len(kicked_s)
-    reunite(state)
+        place(state, state.nodes["b1"], 60.0, (15.0, 3.0, 0.0), WIDE_M)
+    assert len(numbers_of(state)) == 2
+    assert reunite(state)
     assert (state.ledger.table("pairs") == pairs).all()
     assert (state.ledger.table("stands") == stands).all()
     after = state.nodes["b1"]
@@ -62,23 +57,43 @@ def test_what_was_found_to_lie_elsewhere_is_taken_back_whole(
     assert "b1" not in state.sightings
 
 
-def test_what_was_dropped_anew_lies_there() -> None:
-    state = walked(Drop(t=40.0, node="b1", by="ff1"))
-    numbers = numbers_of(state)
-    assert len(numbers) == 2
-    reunite(state)
-    assert numbers_of(state) == numbers
-    branch(state, Moved("b1", 50.0, 10))
-    reunite(state)
-    assert numbers_of(state) == numbers
-    assert state.nodes["b1"].index == max(numbers)
-
-
-def test_who_has_been_retired_since_stays_so() -> None:
+def test_of_two_places_only_the_last_is_taken_back() -> None:
+    """Nobody would ask again about the first."""
     state = walked()
-    first = state.nodes["b1"].index
     branch(state, Moved("b1", TURNED_S, 25))
+    second = state.nodes["b1"].index
+    place(state, state.nodes["b1"], 45.0, (12.0, 3.0, 0.0), WIDE_M)
+    branch(state, Moved("b1", 45.0, 15))
+    assert reunite(state)
+    assert state.nodes["b1"].index == second
+    assert len(numbers_of(state)) == 2
+
+
+def test_what_was_dropped_or_placed_anew_lies_there() -> None:
+    for again in (
+        Drop(t=40.0, node="b1", by="ff1"),
+        Node(t=40.0, node="b1", role="breadcrumb", position_m=(20.0, 1.0, 0.0), sigma_m=0.1),
+    ):
+        state = walked()
+        branch(state, Moved("b1", TURNED_S, 25))
+        fold_tick(state, 62.0, [again])
+        numbers, index = numbers_of(state), state.nodes["b1"].index
+        assert not reunite(state)
+        assert (numbers_of(state), state.nodes["b1"].index) == (numbers, index)
+
+
+def test_who_has_been_retired_or_moves_by_itself_since_is_asked_no_more() -> None:
+    state = walked()
+    branch(state, Moved("b1", TURNED_S, 25))
+    numbers = numbers_of(state)
     retire(state, state.nodes["b1"], 61.0)
-    reunite(state)
-    assert (state.nodes["b1"].mode, state.nodes["b1"].index) == ("retired", first)
-    assert numbers_of(state) == {first}
+    assert not reunite(state)
+    assert numbers_of(state) == numbers
+    state = walked()
+    branch(state, Moved("b1", TURNED_S, 25))
+    fold_tick(state, 62.0, [Node(t=61.0, node="b1", role="responder", position_m=(9.0, 0.0, 0.0))])
+    assert not reunite(state)
+
+
+def test_where_nothing_was_kicked_nothing_is_taken_back() -> None:
+    assert not reunite(walked())

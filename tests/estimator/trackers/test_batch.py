@@ -115,9 +115,11 @@ def test_the_smoothed_view_shows_a_kicked_breadcrumb_where_it_lay_and_where_it_l
     seed: int, retired: bool
 ) -> None:
     shown = scenario("kicked-breadcrumb", seed)
-    gone = [Retire(t=439.0, node=name) for name in ("ff1", "ff2") if retired]
+    gone = [Retire(t=439.0, node=name) for name in ("ff1", "ff2", "b3") if retired]
     tracks = BatchSmoother().smooth([*shown.readings, *gone])
     track, beside = ({p.t: np.array(p.position_m) for p in tracks[name]} for name in ("b3", "b2"))
+    moved = np.hypot(*(track[380.0] - track[150.0])[:2])
+    assert moved == pytest.approx(np.hypot(*np.ptp(shown.truth["b3"].position_m, axis=0)[:2]), abs=0.5)
     for t in (150.0, 380.0):
         told = track[t] - beside[t]
         true = shown.truth["b3"].at(np.array([t]))[0] - shown.truth["b2"].at(np.array([t]))[0]
