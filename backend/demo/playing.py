@@ -8,7 +8,7 @@ import time
 import structlog
 
 from backend.demo.batching import batches_of, body_of, gateways_of
-from backend.demo.client import Client, IncidentGone
+from backend.demo.client import Client, IncidentGone, Refused
 from estimator.simulate import Scenario, scenario
 
 log = structlog.get_logger(__name__)
@@ -76,21 +76,25 @@ def play_until_stopped(
 
 async def _play_once(client: Client, played: Scenario, speed: float) -> None:
     """One incident, from its first reading to its closing."""
-    incident = await client.create_incident(
-        {
-            "name": played.incident + NAME_SUFFIX,
-            "clock": "live" if speed == 1.0 else "recorded",
-            "levels": [{"level": s.level, "name": s.name, "up_m": s.up_m} for s in played.storeys],
-        }
+    # Stopped in the middle of it, we would not know what to close: creating goes on when we are cancelled.
+    creating = asyncio.create_task(
+        client.create_incident(
+            {
+                "name": played.incident + NAME_SUFFIX,
+                "clock": "live" if speed == 1.0 else "recorded",
+                "levels": [{"level": s.level, "name": s.name, "up_m": s.up_m} for s in played.storeys],
+            }
+        )
     )
-    log.info("incident begins", incident=incident, scenario=played.name, minutes=played.duration_s / 60)
     try:
+        incident = await asyncio.shield(creating)
+        log.info("incident begins", incident=incident, scenario=played.name, minutes=played.duration_s / 60)
         await _post_all(client, incident, played, speed)
     except asyncio.CancelledError:
         # Nobody else would ever end what we began; but a server that is gone itself is not waited for.
-        with contextlib.suppress(TimeoutError):
+        with contextlib.suppress(TimeoutError, Refused):
             async with asyncio.timeout(GOODBYE_S):
-                await client.close_incident(incident)
+                await client.close_incident(await creating)
         raise
     await client.close_incident(incident)
     log.info("incident ended", incident=incident)

@@ -4,6 +4,7 @@ import json
 import socket
 import struct
 import threading
+import time
 from collections import deque
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
@@ -21,6 +22,7 @@ class FieldServer(ThreadingHTTPServer):
         super().__init__(("127.0.0.1", 0), _Handler)
         self.faults: deque[Fault] = deque()
         self.not_ready = 0
+        self.creating_lasts_s = 0.0
         self.incidents: dict[str, dict[str, Any]] = {}
         self.batches: dict[tuple[str, str, str], dict[str, Any]] = {}
         self.requests: list[tuple[str, str, bytes]] = []
@@ -72,6 +74,7 @@ class _Handler(BaseHTTPRequestHandler):
             if self.path == "/api/v1/incidents":
                 name = f"i{len(self.server.incidents) + 1}"
                 self.server.incidents[name] = json.loads(body) | {"id": name, "state": "active"}
+                time.sleep(self.server.creating_lasts_s)
                 self._answer(201, self.server.incidents[name])
             else:
                 self._telemetry(self.path.split("/")[4], body)

@@ -120,6 +120,19 @@ def test_when_the_incident_is_closed_by_others_the_next_one_begins(
     assert field_server.incidents["i2"]["state"] == "closed"
 
 
+def test_stopped_while_its_incident_is_being_created_it_closes_that_one(field_server: FieldServer) -> None:
+    field_server.creating_lasts_s = 0.3
+
+    async def stop_it() -> None:
+        task = asyncio.create_task(play(field_server.url, None, "office-fire", 1))
+        await asyncio.to_thread(eventually, lambda: "i1" in field_server.incidents)
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+
+    asyncio.run(asyncio.wait_for(stop_it(), 20.0))
+    assert field_server.incidents["i1"]["state"] == "closed"
+
+
 def test_sigterm_ends_it_and_closes_its_incident(field_server: FieldServer) -> None:
     call = f"play_until_stopped({field_server.url!r}, 'secret', 'office-fire', 1)"
     process = subprocess.Popen([sys.executable, "-c", f"from backend.demo import play_until_stopped; {call}"])
