@@ -7,9 +7,11 @@ alike until an end has moved on. Taken for independent, they would make any esti
 import math
 
 import msgspec
+import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
+from estimator.graph.dense import Array
 
 
 class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
@@ -63,11 +65,33 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
 
 
 @njit(cache=True, error_model="numpy")
-def link_sigma(factor: float, shared: float, nominal: float, alike: float) -> float:
+def single_sigma(white: float, common: float, alike: float) -> float:
     """Standard deviation to give to one reading of those that share an error.
 
     k readings of white variance w and common variance c are worth k / (w + k c) together: each gets what it
     adds to that.
+
+    Args:
+        white: w.
+        common: c.
+        alike: k, which number in its row of alike readings this one is.
+    """
+    before, now = white + (alike - 1.0) * common, white + alike * common
+    return max(math.sqrt(before * now / white), physics.SIGMA_FLOOR_M)
+
+
+@njit(cache=True, error_model="numpy")
+def single_sigmas(white: Array, common: Array, alike: Array) -> Array:
+    """Those of m readings: see `single_sigma`."""
+    found = np.empty(len(white))
+    for i in range(len(white)):
+        found[i] = single_sigma(white[i], common[i], alike[i])
+    return found
+
+
+@njit(cache=True, error_model="numpy")
+def link_sigma(factor: float, shared: float, nominal: float, alike: float) -> float:
+    """The same by what has been learned of a technology.
 
     Args:
         factor: learned standard deviation of the technology over the claimed or assumed one.
@@ -77,6 +101,4 @@ def link_sigma(factor: float, shared: float, nominal: float, alike: float) -> fl
     """
     total = (nominal * factor) ** 2
     common = shared * total
-    white = total - common
-    before, now = white + (alike - 1.0) * common, white + alike * common
-    return max(math.sqrt(before * now / white), physics.SIGMA_FLOOR_M)
+    return single_sigma(total - common, common, alike)

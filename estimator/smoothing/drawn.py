@@ -49,9 +49,6 @@ def drawn_place(problem: Problem, solved: Solved, node: NodeState, mine: Integer
     sigma = problem.rows.sigma
     try:
         return _without(problem, solved, node, here.rows)
-    except ValueError:
-        # Without them something hangs in the air: they have held it, not bent it.
-        return None
     finally:
         # Whoever is asked next is asked by the noise that the window was solved with.
         problem.rows.sigma = sigma
@@ -62,7 +59,11 @@ def _without(problem: Problem, solved: Solved, node: NodeState, mine: Integers) 
     # What the last steps have left is nobody's fault.
     solved = problem.solve(solved.x, iterations=ITERATIONS)
     others = problem.without(mine)
-    alone = others.solve(solved.x, iterations=ITERATIONS)
+    try:
+        alone = others.solve(solved.x, iterations=ITERATIONS)
+    except ValueError:
+        # Without them something hangs in the air: they have held it, not bent it.
+        return None
     relief = others.cost(solved.x, solved.linear.residual, solved.motions) - alone.cost
     here, there = (seen_of(problem, one, node, mine) for one in (solved, alone))
     if here is None or there is None or relief <= GAIN:

@@ -96,7 +96,6 @@ def _settle(
         for k in felt:
             for r in range(n):
                 told[k, r] = EACH * _log_density(off[k], sigma, rungs[r])
-        back[:] = 0.0
         _carry(before, kept, told, onward, back)
         for i in range(m):
             most = -math.inf
@@ -130,13 +129,13 @@ def _settle(
 @njit(cache=True)
 def _carry(before: Integers, kept: Array, told: Array, onward: Array, back: Array) -> None:
     """Sum up along each link, there and back, what is told of it: that fades as its error does."""
-    m, n = told.shape
-    for i in range(m):
-        for r in range(n):
-            onward[i, r] = told[i, r] + (kept[i] * onward[before[i], r] if before[i] >= 0 else 0.0)
-    for i in range(m - 1, -1, -1):
-        for r in range(n if before[i] >= 0 else 0):
-            back[before[i], r] = kept[i] * (told[i, r] + back[i, r])
+    onward[:], back[:] = told, 0.0
+    for i in range(len(told)):
+        if before[i] >= 0:
+            onward[i] += kept[i] * onward[before[i]]
+    for i in range(len(told) - 1, -1, -1):
+        if before[i] >= 0:
+            back[before[i]] = kept[i] * (told[i] + back[i])
 
 
 @njit(cache=True)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from estimator.fusion import physics
 from estimator.fusion.ledger import BEARING, RANGE, RSSI
-from estimator.fusion.noise import LearnedNoise
+from estimator.fusion.noise import LearnedNoise, single_sigmas
 from estimator.fusion.pairs import UNTOLD_POWER
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
@@ -21,18 +21,6 @@ from estimator.smoothing.obstructed import excess
 
 DROP = len(physics.NOISES) - 1
 NOISES = np.array(physics.NOISES)
-
-
-def sigma_of(white: Array, common: Array, alike: Array) -> Array:
-    """Standard deviations to give to readings that share a part of their error: `fusion.noise.link_sigma`.
-
-    Args:
-        white: variance that each has for itself, m.
-        common: variance that is shared, m.
-        alike: which number in its row of alike readings each is, m.
-    """
-    before, now = white + (alike - 1.0) * common, white + alike * common
-    return np.asarray(np.maximum(np.sqrt(before * now / white), physics.SIGMA_FLOOR_M))
 
 
 class Linearised(NamedTuple):
@@ -172,9 +160,8 @@ class Rows:
         total = (self.nominal * factor) ** 2
         white = (1.0 - shared) * total
         common = total - white + stays**2
-        self._told = np.where(self.source >= 0, sigma_of(white, common, self.alike), self.nominal)
         self._white, self._common = white, common
-        self.sigma = self._told.copy()
+        self._tell(white, common)
 
     def obstruct(self, x: Array) -> None:
         """Tell by how ranges scatter on their links what they are too long by: see `smoothing.obstructed`.
@@ -186,12 +173,18 @@ class Rows:
         self.shift = np.zeros(len(self.nominal))
         way, off = apart(self._readings, x), residuals(self._readings, x)
         among = self._inside & (self.pairs[:, 1] == RANGE) & (np.abs(way[:, 2]) <= physics.FLOOR_M)
+        white, common = self._white.copy(), self._common.copy()
         for source in np.unique(self.source[:m][among]):
             at = np.flatnonzero(among & (self.source[:m] == source))
             found = excess(self.pairs[at, 9].astype(np.int64), self.alike[at], off[at])
             self.shift[at] = found.mean_m
-            white, common = self._white[at] + found.scatter_m2, self._common[at] + found.doubt_m2
-            self._told[at] = sigma_of(white, common, self.alike[at])
+            white[at] += found.scatter_m2
+            common[at] += found.doubt_m2
+        self._tell(white, common)
+
+    def _tell(self, white: Array, common: Array) -> None:
+        self._told = np.where(self.source >= 0, single_sigmas(white, common, self.alike), self.nominal)
+        self.sigma = self._told.copy()
 
     def widen(self, x: Array, jacobian: Array) -> None:
         """What the estimate says of each reading's noise.
@@ -229,6 +222,12 @@ class Rows:
     def places(self, x: Array) -> tuple[Array, Array]:
         """Where both ends of each pair are at an estimate, m × 3 each (m)."""
         return place_ends(self._a.table, x).place, place_ends(self._b.table, x).place
+
+    @property
+    def standing(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Whether each end of each pair stands, m each."""
+        a, b = self._a.table.kind, self._b.table.kind
+        return np.asarray((a != FREE) & (a != UNIT)), np.asarray((b != FREE) & (b != UNIT))
 
     @property
     def held(self) -> NDArray[np.bool_]:

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from msgspec.structs import replace
 
 from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude
@@ -60,3 +61,17 @@ def two_responders(seconds: int = 60, seed: int = 1) -> list[AnyReading]:
             readings.append(Bearing(t=t, a="ff1", b="anchor", bearing_rad=direction, sigma_rad=0.1))
     readings.append(Retire(t=float(seconds), node="b10"))
     return sorted(readings, key=lambda r: r.t)
+
+
+def behind_a_wall() -> list[AnyReading]:
+    """The same, with a wall before the beacon, which lies where it was said to: its ranges are too long by
+    now this and now that."""
+    chance = np.random.default_rng(4)
+    lies = Node(t=0.0, node="beacon", role="beacon", position_m=(-5.0, 12.0, 0.0), sigma_m=0.3)
+    walk = [lies if isinstance(r, Node) and r.node == "beacon" else r for r in two_responders()]
+    return [
+        replace(r, range_m=r.range_m + float(chance.exponential(1.0)))
+        if isinstance(r, Range) and r.b == "beacon"
+        else r
+        for r in walk
+    ]

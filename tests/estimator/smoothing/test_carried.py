@@ -7,25 +7,19 @@ import pytest
 
 from estimator.fusion.prior import Prior
 from estimator.graph.dense import Array
-from estimator.measurements import AnyReading
-from estimator.measurements.displacement import Displacement
-from estimator.measurements.node import Node
-from estimator.measurements.range import Range
 from estimator.measurements.retire import Retire
 from estimator.smoothing.carried import Carried
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.groups import Groups
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.solve import Problem
-from estimator.smoothing.turned import STEADY_M, turn
+from estimator.smoothing.turned import STEADY_M
 from estimator.smoothing.walks import STATES
 from tests.estimator.smoothing.test_marginals import prior_at, window_from
+from tests.estimator.smoothing.turning import HEADING_SIGMA_RAD, turned_map, walk_past_beacons
 from tests.estimator.smoothing.windows import difference, fused, problem_of
 
-BASE_M = np.array([37.0, -22.0])
-BESIDE_M = {"b1": (5.0, 8.0), "b2": (-6.0, 12.0), "base": (0.0, 0.0)}
-HEADING_SIGMA_RAD = 0.1
-UNKNOWN_M = 1e3
+BASE_M = (37.0, -22.0)
 
 
 class Later(NamedTuple):
@@ -36,38 +30,6 @@ class Later(NamedTuple):
     x: Array
 
 
-def walk_past_beacons() -> list[AnyReading]:
-    """A unit, and one who has none, walk between beacons that nobody has surveyed; then the base goes off."""
-    chance = np.random.default_rng(1)
-    entry_e, entry_n = BASE_M.tolist()
-    readings: list[AnyReading] = [
-        Node(t=0.0, node="base", role="base", position_m=(entry_e, entry_n, 0.0)),
-        Node(
-            t=0.0,
-            node="ff1",
-            role="responder",
-            position_m=(entry_e + 1.0, entry_n, 0.0),
-            sigma_m=UNKNOWN_M,
-            heading_sigma_rad=HEADING_SIGMA_RAD,
-        ),
-        Node(t=0.0, node="ff2", role="responder", position_m=(entry_e, entry_n, 0.0), sigma_m=UNKNOWN_M),
-    ]
-    readings += [Node(t=0.0, node=name, role="beacon") for name in ("b1", "b2")]
-    places = {name: BASE_M + np.array(at) for name, at in BESIDE_M.items()}
-    walkers = {"ff1": BASE_M + np.array([1.0, 0.0]), "ff2": BASE_M + np.array([5.0, 1.0])}
-    for second in range(1, 61):
-        step = np.array([np.cos(second / 7.0), np.sin(second / 7.0)])
-        walkers["ff1"] = walkers["ff1"] + step
-        walkers["ff2"] = walkers["ff2"] + 0.5 * np.array([np.sin(second / 9.0), np.cos(second / 9.0)])
-        e, n = (step + chance.normal(0.0, 0.03, 2)).tolist()
-        readings.append(Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(e, n, 0.0)))
-        for who, at in walkers.items():
-            for name, place in places.items():
-                range_m = float(np.hypot(*(at - place)) + chance.normal(0.0, 0.1))
-                readings.append(Range(t=float(second), a=who, b=name, range_m=range_m, technology="uwb"))
-    return [*readings, Retire(t=60.5, node="base", reason="switched off")]
-
-
 def cut_in_the_middle(whole: Problem) -> Later:
     """The second half of a window, with what the first half has left as its prior."""
     solved = whole.solve(whole.layout.start())
@@ -76,36 +38,13 @@ def cut_in_the_middle(whole: Problem) -> Later:
     return Later(window.layout, prior_at(whole, solved, cut), solved.x[cut * window.layout.width :])
 
 
-def turned_about_the_base(layout: Layout, x: Array, by_rad: float) -> tuple[Array, Array]:
-    """All unknowns with the map turned, flat; and how they begin to change as it turns."""
-    size = layout.length * layout.width
-    there, way = x.copy(), np.zeros_like(x)
-    keyframes = there[:size].reshape(layout.length, layout.width)
-    begins = way[:size].reshape(layout.length, layout.width)
-    for i, walk in enumerate(layout.walks):
-        place, rest = slice(STATES * i, STATES * i + 2), slice(STATES * i + 3, STATES * i + 5)
-        begins[:, place] = turn(keyframes[:, place] - BASE_M, np.pi / 2)
-        keyframes[:, place] = BASE_M + turn(keyframes[:, place] - BASE_M, by_rad)
-        if walk.way is None:
-            begins[:, rest] = turn(keyframes[:, rest], np.pi / 2)
-            keyframes[:, rest] = turn(keyframes[:, rest], by_rad)
-        else:
-            begins[:, rest.start] = 1.0
-            keyframes[:, rest.start] += by_rad
-    for start in layout.stands.values():
-        own = slice(size + start, size + start + 2)
-        way[own] = turn(x[own] - BASE_M, np.pi / 2)
-        there[own] = BASE_M + turn(x[own] - BASE_M, by_rad)
-    return there, way
-
-
 @pytest.mark.parametrize("by_rad", [-0.4, 0.05, 1.0])
 def test_a_map_turned_as_a_whole_fits_as_it_did_but_for_what_was_said_of_headings(by_rad: float) -> None:
     layout, prior, x = LATER
     assert [walk.way is None for walk in layout.walks] == [False, True]
     assert layout.state.nodes["base"].mode == "retired"
     carried, size = Carried(layout, prior), layout.length * layout.width
-    there, way = turned_about_the_base(layout, x, by_rad)
+    there, way = turned_map(layout, x, by_rad)
     n = np.concatenate([way[: layout.width], way[size:]])[: len(prior.vector)]
     known, pull = float(n @ prior.matrix @ n), float(n @ prior.vector)
     expected = 0.5 * known * by_rad**2 - pull * by_rad
@@ -140,7 +79,7 @@ def test_what_is_known_of_who_has_gone_does_not_hold_the_map() -> None:
     vector = np.concatenate([prior.vector, np.zeros(m)])
     reference = np.concatenate([prior.reference, np.ones(m)])
     gone = Prior((*prior.keys, ("walk", 999)), matrix, vector, reference, prior.epochs)
-    there, _ = turned_about_the_base(layout, x, 0.3)
+    there, _ = turned_map(layout, x, 0.3)
     alone, among = Carried(layout, prior), Carried(layout, gone)
     assert among.cost(there) - among.cost(x) == pytest.approx(alone.cost(there) - alone.cost(x), abs=1e-6)
 
@@ -154,4 +93,5 @@ def test_what_is_tied_in_one_direction_only_is_tied_in_both_once_the_map_has_tur
     assert {0, 1} < first
 
 
-LATER = cut_in_the_middle(problem_of(fused(walk_past_beacons())))
+WALK = [*walk_past_beacons(BASE_M, free=True), Retire(t=60.5, node="base", reason="switched off")]
+LATER = cut_in_the_middle(problem_of(fused(WALK)))

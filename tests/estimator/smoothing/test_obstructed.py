@@ -6,15 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from msgspec.structs import replace
 
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
-from estimator.measurements.node import Node
-from estimator.measurements.range import Range
 from estimator.smoothing.obstructed import excess
 from tests.estimator.smoothing.windows import fused, problem_of
-from tests.estimator.walks import two_responders
+from tests.estimator.walks import behind_a_wall
 
 READINGS, LINKS = 40, 12
 
@@ -101,15 +98,7 @@ def test_a_few_readings_tell_of_no_wall(count: int) -> None:
 
 
 def test_a_window_takes_off_its_ranges_what_they_are_too_long_by_and_believes_them_less() -> None:
-    chance = np.random.default_rng(4)
-    walk = [
-        replace(r, range_m=r.range_m + float(chance.exponential(1.0)))
-        if isinstance(r, Range) and r.b == "beacon"
-        else r
-        for r in two_responders()
-    ]
-    lies = Node(t=0.0, node="beacon", role="beacon", position_m=(-5.0, 12.0, 0.0), sigma_m=0.3)
-    problem = problem_of(fused([lies if isinstance(r, Node) and r.node == "beacon" else r for r in walk]))
+    problem = problem_of(fused(behind_a_wall()))
     rows, solved = problem.rows, problem.solve(problem.layout.start())
     raw, sigma = rows.residual(solved.x), rows.sigma.copy()
     rows.obstruct(solved.x)

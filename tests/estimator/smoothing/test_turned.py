@@ -9,24 +9,19 @@ from hypothesis import strategies as st
 
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
-from estimator.measurements.displacement import Displacement
-from estimator.measurements.node import Node
-from estimator.measurements.range import Range
 from estimator.simulate import scenario
 from estimator.simulate.base import Report
 from estimator.smoothing.chain import Remainder
-from estimator.smoothing.layout import Layout
-from estimator.smoothing.solve import Problem
 from estimator.smoothing.turned import turn_between, turned
-from estimator.smoothing.walks import STATES, unit_motion
+from estimator.smoothing.walks import unit_motion
 from estimator.smoothing.ways import Way
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.lag import Lag
 from tests.estimator.smoothing.test_jacobians import steps_of, unit_states
+from tests.estimator.smoothing.turning import HEADING_SIGMA_RAD, turned_map, walk_past_beacons
 from tests.estimator.smoothing.windows import fused, problem_of, random_state
 
 seeds = st.integers(0, 10_000)
-HEADING_SIGMA_RAD = 0.1
 
 
 def turn_of_walk(states: Array) -> Array:
@@ -34,20 +29,6 @@ def turn_of_walk(states: Array) -> Array:
     found = np.zeros(states.shape)
     found[:, 0], found[:, 1], found[:, 3] = -states[:, 1], states[:, 0], 1.0
     return found
-
-
-def turn_of(layout: Layout, x: Array) -> Array:
-    """The same for all unknowns of a window, flat."""
-    size = layout.length * layout.width
-    keyframes = x[:size].reshape(layout.length, layout.width)
-    found = np.zeros_like(keyframes)
-    for i in range(len(layout.walks)):
-        own = slice(STATES * i, STATES * (i + 1))
-        found[:, own] = turn_of_walk(keyframes[:, own])
-    border = np.zeros(layout.border)
-    for start in layout.stands.values():
-        border[start], border[start + 1] = -x[size + start + 1], x[size + start]
-    return np.concatenate([found.ravel(), border])
 
 
 @given(seeds)
@@ -62,37 +43,9 @@ def test_a_way_that_is_turned_as_a_whole_fits_as_it_did(seed: int) -> None:
         assert motion.transition[k] @ turn[k] == pytest.approx(turn[k + 1], abs=1e-9)
 
 
-def walk_past_beacons() -> Problem:
-    """A unit walks between beacons that nobody has surveyed."""
-    chance = np.random.default_rng(1)
-    readings: list[Node | Displacement | Range] = [
-        Node(t=0.0, node="base", role="base", position_m=(0.0, 0.0, 0.0)),
-        Node(
-            t=0.0,
-            node="ff1",
-            role="responder",
-            position_m=(1.0, 0.0, 0.0),
-            sigma_m=1e3,
-            heading_sigma_rad=HEADING_SIGMA_RAD,
-        ),
-    ]
-    places = {"b1": np.array([5.0, 8.0]), "b2": np.array([-6.0, 12.0]), "base": np.zeros(2)}
-    readings += [Node(t=0.0, node=name, role="beacon") for name in ("b1", "b2")]
-    at = np.array([1.0, 0.0])
-    for second in range(1, 61):
-        step = np.array([np.cos(second / 7.0), np.sin(second / 7.0)])
-        at = at + step
-        e, n = (step + chance.normal(0.0, 0.03, 2)).tolist()
-        readings.append(Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(e, n, 0.0)))
-        for name, place in places.items():
-            range_m = float(np.hypot(*(at - place)) + chance.normal(0.0, 0.1))
-            readings.append(Range(t=float(second), a="ff1", b=name, range_m=range_m, technology="uwb"))
-    return problem_of(fused(readings))
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_a_window_knows_of_north_what_was_said_of_headings(seed: int) -> None:
-    problem = walk_past_beacons()
+    problem = WALKED
     layout = problem.layout
     assert len(layout.stands) == 2
     x = random_state(problem, seed)
@@ -100,7 +53,7 @@ def test_a_window_knows_of_north_what_was_said_of_headings(seed: int) -> None:
     problem.rows.widen(x, linear.jacobian)
     chain = problem.assemble(x, linear, problem.weigh(linear.residual), motions)
     left = chain.remainder(layout.length - 1)
-    last = turn_of(layout, x)[(layout.length - 1) * layout.width :]
+    last = turned_map(layout, x, 0.0)[1][(layout.length - 1) * layout.width :]
     known = float(last @ left.matrix @ last)
     # Beside what was said, the entry and the bearing of who stands are known next to not at all.
     assert known == pytest.approx(1.0 / HEADING_SIGMA_RAD**2, rel=0.1)
@@ -117,7 +70,7 @@ def test_what_was_linearised_elsewhere_knows_no_turn_of_where_places_are_now(see
     for start in layout.stands.values():
         far = 0.4 * np.hypot(*now[size + start : size + start + 2])
         was[size + start : size + start + 2] += far * chance.uniform(-0.7, 0.7, 2)
-    old, new = (turn_of(layout, at)[size - width :] for at in (was, now))
+    old, new = (turned_map(layout, at, 0.0)[1][size - width :] for at in (was, now))
     rows = chance.normal(0.0, 1.0, (2 * len(old), len(old)))
     rows -= np.outer(rows @ old, old) / (old @ old)
     found = turned(Remainder(rows.T @ rows, rows.T @ np.ones(len(rows))), layout, was, now)
@@ -173,4 +126,4 @@ def north(reports: tuple[Report, ...], until_s: float) -> Iterator[tuple[float, 
         lag.add([report.reading])
 
 
-WALKED = walk_past_beacons()
+WALKED = problem_of(fused(walk_past_beacons()))
