@@ -5,6 +5,7 @@ import numpy as np
 from estimator.fusion.descent import descend
 from estimator.fusion.free import free_motion
 from estimator.fusion.modes import Sought, find_modes
+from estimator.fusion.noise import single_sigmas
 from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.rows import FIELDS, ONE
 from estimator.fusion.silence import wandered_m2
@@ -87,6 +88,7 @@ def _warm_chain() -> None:
     add_unsure(jacobians(readings, x), place, place, place, place, np.ones(5))
     apart(readings, x)
     excess(slab, one, one)
+    single_sigmas(one, one, one)
     add_bends(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
 
 

@@ -43,6 +43,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     newest_t: float
     due: bool
     suspected: bool
+    exposed: bool
     begun_t: float | None
     refreshed_t: float
     window_t: float | None
@@ -74,6 +75,7 @@ def record_of(state: FusionState) -> FusionRecord:
         state.newest_t,
         state.due,
         state.suspected,
+        state.exposed,
         state.begun_t,
         state.refreshed_t,
         state.window_t,
@@ -104,7 +106,7 @@ def state_of(record: FusionRecord) -> FusionState:
     for name in COLUMNS:
         state.ledger.replace(name, unpack(record.tables[name]))
     state.newest_t, state.due, state.begun_t = record.newest_t, record.due, record.begun_t
-    state.suspected = record.suspected
+    state.suspected, state.exposed = record.suspected, record.exposed
     state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
     state.uncalibrated, state.bent_m = record.uncalibrated, record.bent_m
     if record.prior is not None:

@@ -7,6 +7,7 @@ from msgspec.structs import replace
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
+from estimator.fusion.images import doubt_m2
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
@@ -178,7 +179,7 @@ def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float)
         # What was measured to it before was measured to another place, or to a hand that carried it.
         node = replace(node, mode="undecided", index=state.number(name))
     wide = (NO_PRIOR_SIGMA_M,) * 3
-    place(state, node, t, where_m, wide)
+    place(state, replace(node, otherwise=by.otherwise), t, where_m, wide)
     state.ledger.add("drops", t, node.index, by.index)
     start = state.graph.rows(state.nodes[name].position).start
     information = np.array([s**-2 for s in physics.DROP_SIGMA_M])
@@ -203,7 +204,8 @@ def retire(state: FusionState, node: NodeState, t: float) -> None:
     if node.decided:
         place_m = tuple_of(state.graph.value(node.position))
         rows = state.graph.rows(node.position)
-        covariance_m2 = upper_triangle(state.graph.covariance()[rows, rows])
+        doubt = doubt_m2(node.otherwise, state.graph.value(node.position)[:2])
+        covariance_m2 = upper_triangle(state.graph.covariance()[rows, rows] + doubt)
         owned = [v for v in (node.position, node.velocity, node.unit) if v in state.graph]
         state.graph.delete_nodes(owned)
     state.nodes[node.node] = replace(

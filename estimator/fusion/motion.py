@@ -13,7 +13,7 @@ from estimator.fusion.introduce import attach_unit, begin_at_base, waits_for_ran
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.physics import NOISES
 from estimator.fusion.rows import Single
-from estimator.fusion.silence import LONGEST_S, wandered_m2
+from estimator.fusion.silence import LONGEST_S, SILENT_S, wandered_m2
 from estimator.fusion.standing import stand_on
 from estimator.fusion.state import FusionState
 from estimator.fusion.way import Mark
@@ -115,6 +115,29 @@ def move_units(state: FusionState, readings: Sequence[Displacement], turns: list
         _advance_units(state, moving)
     for step in steps.values():
         state.nodes[step.node.node] = step.node
+
+
+def returns(state: FusionState, readings: Sequence[Displacement]) -> dict[str, float]:
+    """Units that report again after a silence of which they tell nothing, and since when they do (s).
+
+    Args:
+        state: the fusion.
+        readings: a tick's displacements, in order of epoch.
+    """
+    told_until = {node.node: node.pose_t for node in state.nodes.values() if node.mode == "unit"}
+    back: dict[str, float] = {}
+    for reading in readings:
+        until_t = told_until.get(reading.node, math.inf)
+        start_t = _start_of(reading, until_t)
+        if start_t > until_t + physics.FREE_TICK_S:
+            back.setdefault(reading.node, start_t)
+        told_until[reading.node] = max(until_t, reading.t)
+    return back
+
+
+def was_silent(node: NodeState) -> bool:
+    """Whether a unit has reported nothing for some time up to where its node is now."""
+    return node.unit_t is None or node.pose_t > node.unit_t + SILENT_S
 
 
 def _start_of(reading: Displacement, pose_t: float | None) -> float:
@@ -240,6 +263,9 @@ def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
     noise = np.zeros((len(nodes), 3, 3))
     for i, (node, t) in enumerate(zip(nodes, until.values(), strict=True)):
         since_s = math.inf if node.unit_t is None else node.pose_t - node.unit_t
+        if since_s < SILENT_S <= since_s + t - node.pose_t:
+            # From now on ranges alone tell where he goes.
+            state.suspected = True
         wander = wandered_m2(t - node.pose_t, since_s)
         across, up = wander, 0.1 * wander
         noise[i, 0, 0], noise[i, 1, 1], noise[i, 2, 2] = across, across, up

@@ -7,6 +7,7 @@ import msgspec
 
 from estimator.estimate import Covariance6, Vector3
 from estimator.fusion.calibration import UNTOLD, Told
+from estimator.fusion.images import Otherwise
 from estimator.fusion.standing import Standing
 from estimator.graph.variable import Variable
 from estimator.measurements.node import Role
@@ -40,6 +41,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
         pressure_t: epoch of its newest fused pressure.
         turned: its unit's frame may be turned by any angle: every window is tried with several.
         bias_told: what readings say of its unit's gyro bias without its prior.
+        otherwise: where it may be instead, by what readings tell as well.
         walk_factors: learned variances of its unit over the assumed ones: of displacements, of its heading.
     """
 
@@ -64,6 +66,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     walk_factors: tuple[float, float] = (1.0, 1.0)
     turned: bool = False
     bias_told: Told = UNTOLD
+    otherwise: tuple[Otherwise, ...] = ()
 
     @property
     def position(self) -> Variable:

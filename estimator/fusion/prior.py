@@ -3,12 +3,16 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+import numpy as np
+
+from estimator.fusion.images import Image
 from estimator.graph.dense import Array
 
 Key = tuple[str, int]
 """A block: ("walk", node number) with a PDR unit's errors, ("free", node number) with a velocity, ("stand",
 node number), ("range" or "rssi", number of the technology)."""
 
+PLACED = ("walk", "free", "stand")
 SIZES: Mapping[str, int] = {"walk": 6, "free": 6, "stand": 3, "range": 2, "rssi": 2}
 """How many numbers each kind of block has."""
 
@@ -30,3 +34,18 @@ class Prior(NamedTuple):
     vector: Array
     reference: Array
     epochs: Mapping[int, float]
+
+    def imaged(self, images: Mapping[int, Image]) -> "Prior":
+        """The same, if nodes had been at images of where they were, by their number."""
+        turn, reference, start = np.eye(len(self.vector)), self.reference.copy(), 0
+        for kind, number in self.keys:
+            image = images.get(number) if kind in PLACED else None
+            if image is not None:
+                for first in (start, start + 3) if kind == "free" else (start,):
+                    turn[first : first + 2, first : first + 2] = image.matrix
+                    reference[first : first + 2] = image.matrix @ reference[first : first + 2]
+                reference[start : start + 2] += image.shift_m
+            start += SIZES[kind]
+        return self._replace(
+            matrix=turn @ self.matrix @ turn.T, vector=turn @ self.vector, reference=reference
+        )

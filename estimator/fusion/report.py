@@ -3,6 +3,7 @@
 import numpy as np
 
 from estimator.estimate import NodeEstimate, Relative
+from estimator.fusion.images import doubt_between_m2, doubt_m2
 from estimator.fusion.introduce import tuple_of, upper_triangle
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
@@ -44,6 +45,9 @@ def _estimate(
             retired=node.mode == "retired",
         )
     (east, north, up), (ee, en, eu, nn, nu, uu) = place
+    if node.otherwise:
+        doubt = doubt_m2(node.otherwise, np.array([east, north]))
+        ee, en, nn = ee + float(doubt[0, 0]), en + float(doubt[0, 1]), nn + float(doubt[1, 1])
     heading, sigma = _heading(state, node, covariance)
     return NodeEstimate(
         node=node.node,
@@ -97,6 +101,8 @@ def relative(state: FusionState, covariance: Array, a: str, b: str) -> Relative 
             ee, en, eu, nn, nu, uu = node.covariance_m2
             total += np.array([[ee, en, eu], [en, nn, nu], [eu, nu, uu]])
     total += selector @ covariance @ selector.T
+    held = [node.otherwise if node.place_m is None else () for node in ends]
+    total += doubt_between_m2(held[0], places[0][:2], held[1], places[1][:2])
     return Relative(delta_m=tuple_of(places[1] - places[0]), covariance_m2=upper_triangle(total))
 
 

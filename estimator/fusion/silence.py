@@ -9,6 +9,8 @@ from estimator.fusion import physics
 LONGEST_S = 600.0
 """No more is added at once: nobody is followed over longer silences."""
 LEAST_M2 = 1e-9
+SILENT_S = 4.0
+"""Who has reported nothing for as long is silent, and followed by ranges alone: less is a lost packet."""
 
 
 @njit(cache=True)

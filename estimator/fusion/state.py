@@ -41,6 +41,8 @@ class FusionState:
         due: the window is to be solved again at once.
         suspected: the window is to be solved again soon: the newest readings disagree with a standing node's
             place, or what was just found has bent what follows.
+        exposed: somebody may be followed to an image of where he goes: the window is to be solved again
+            soon.
         begun_t: end of the first tick with a node in it.
         refreshed_t: end of the tick at which the window was last solved.
         window_t: epoch of the window's first keyframe.
@@ -68,6 +70,7 @@ class FusionState:
         self.bent_m = 0.0
         self.due = False
         self.suspected = False
+        self.exposed = True
         self.begun_t: float | None = None
         self.refreshed_t = 0.0
         self.window_t: float | None = None
@@ -129,8 +132,9 @@ class FusionState:
 
     def base_place(self) -> Vector3:
         """Where the base stands, or stood if all are retired: the origin, unless it says otherwise."""
-        bases = [(n.mode == "retired", n.index, n.place_m) for n in self.nodes.values() if n.role == "base"]
-        return min(bases, default=(False, 0, None))[2] or (0.0, 0.0, 0.0)
+        bases = [n for n in self.nodes.values() if n.role == "base" and n.place_m is not None]
+        base = min(bases, key=lambda n: n.mode == "retired", default=None)
+        return (0.0, 0.0, 0.0) if base is None or base.place_m is None else base.place_m
 
     def bias_sigma_radps(self, node: NodeState) -> float:
         """Standard deviation of the prior of the gyro bias of a node's unit (rad/s)."""

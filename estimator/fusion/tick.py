@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from operator import attrgetter
+from operator import attrgetter, itemgetter
 
 import numpy as np
 from msgspec.structs import replace
@@ -57,20 +57,49 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyReading]
             state.say("not_fused", reading.t, reading.node, text, once=f"imu of {reading.node}")
             state.node_of(reading.node, "responder", reading.t)
             state.count("not_fused")
-    singles: list[Single] = []
-    motion.move_units(state, displacements, singles)
     holds.sort(key=attrgetter("t"))
-    ready = _covered(state, holds, until_t - physics.PENDING_S, {r.node for r in retired})
-    for part in _parts(state, ready):
-        _hold(state, part, singles)
-        singles = []
+    late_t, leaving = until_t - physics.PENDING_S, {r.node for r in retired}
+    while back := motion.returns(state, displacements):
+        # What was heard of who was silent is not held against where his unit has taken him since.
+        name, back_t = min(back.items(), key=itemgetter(1))
+        early = [r for r in displacements if r.t <= back.get(r.node, math.inf)]
+        displacements = [r for r in displacements if r.t > back.get(r.node, math.inf)]
+        _fold(state, early, [r for r in holds if r.t <= back_t], late_t, {name})
+        holds = [*state.waiting, *(r for r in holds if r.t > back_t)]
+        motion.drift_units(state, {name: back_t})
+        state.suspected = state.suspected or motion.was_silent(state.nodes[name])
+    _fold(state, displacements, holds, late_t, leaving)
     for gone in retired:
         _retire(state, gone)
     keep_poses(state)
 
 
+def _fold(
+    state: FusionState,
+    displacements: Sequence[Displacement],
+    holds: Sequence[AnyReading],
+    late_t: float,
+    unwaited: set[str],
+) -> None:
+    """Move units, and hold against everybody's places what nothing is to be waited for.
+
+    Args:
+        state: the fusion: takes readings that wait.
+        displacements: in order of epoch.
+        holds: all others, in order of epoch.
+        late_t: epoch before which none waits.
+        unwaited: nodes for whose displacements nothing waits.
+    """
+    singles: list[Single] = []
+    motion.move_units(state, displacements, singles)
+    ready = _covered(state, holds, late_t, unwaited)
+    for part in _parts(state, ready):
+        _hold(state, part, singles)
+        singles = []
+
+
 def _covered(
-    state: FusionState, readings: Sequence[AnyReading], late_t: float, gone: set[str]
+    state: FusionState, readings: Sequence[AnyReading], late_t: float, unwaited: set[str]
 ) -> list[AnyReading]:
     """Readings to be held now; for the others a displacement that covers their epoch may still come.
 
@@ -78,9 +107,9 @@ def _covered(
         state: the fusion: takes those that wait.
         readings: in order of epoch.
         late_t: epoch before which none waits.
-        gone: nodes that retire in this tick: nothing waits for them.
+        unwaited: nodes for whose displacements nothing waits.
     """
-    units = {n.node: n.pose_t + SAME_EPOCH_S for n in state.nodes.values() if n.mode == "unit"}
+    units = _told_until(state)
     soonest = min(units.values(), default=math.inf)
     ready: list[AnyReading] = []
     waiting: list[AnyReading] = []
@@ -91,9 +120,14 @@ def _covered(
             continue
         names = names_of(reading)
         wait = t > min(units.get(name, math.inf) for name in names)
-        (waiting if wait and gone.isdisjoint(names) else ready).append(reading)
+        (waiting if wait and unwaited.isdisjoint(names) else ready).append(reading)
     state.waiting = tuple(waiting)
     return ready
+
+
+def _told_until(state: FusionState) -> dict[str, float]:
+    """The epoch up to which each unit's own way is known, by node (s)."""
+    return {n.node: n.pose_t + SAME_EPOCH_S for n in state.nodes.values() if n.mode == "unit"}
 
 
 def keep_poses(state: FusionState) -> None:
@@ -161,15 +195,15 @@ def _parts(state: FusionState, readings: Sequence[AnyReading]) -> list[Sequence[
     loose = {
         n.node for n in state.nodes.values() if n.role in MOVING_ROLES and n.mode in ("free", "undecided")
     }
-    covered = {n.node: n.pose_t + SAME_EPOCH_S for n in state.nodes.values() if n.mode == "unit"}
-    soonest = min(covered.values(), default=math.inf)
+    units = _told_until(state)
+    soonest = min(units.values(), default=math.inf)
     if not loose and all(reading.t <= soonest for reading in readings):
         return [readings]
     together: list[AnyReading] = []
     parts: dict[int, list[AnyReading]] = {}
     for reading in readings:
         names = names_of(reading)
-        if loose.isdisjoint(names) and reading.t <= min(covered.get(name, math.inf) for name in names):
+        if loose.isdisjoint(names) and reading.t <= min(units.get(name, math.inf) for name in names):
             together.append(reading)
         else:
             parts.setdefault(int(reading.t / physics.FREE_TICK_S), []).append(reading)

@@ -27,7 +27,7 @@ def branch(state: FusionState, moved: Moved) -> None:
     pairs = state.ledger.table("pairs")
     state.ledger.replace("pairs", renumber(pairs, node.index, number, moved.since_t))
     state.graph.delete_nodes([node.position])
-    state.nodes[moved.name] = replace(node, mode="undecided", index=number)
+    state.nodes[moved.name] = replace(node, mode="undecided", index=number, otherwise=())
     state.sightings[moved.name] = moved.readings
     state.tried.pop(moved.name, None)
     text = f"{moved.name} lies elsewhere than it did: it was kicked or carried"
@@ -37,10 +37,10 @@ def branch(state: FusionState, moved: Moved) -> None:
 def reunite(state: FusionState) -> bool:
     """Take back where readings have put standing nodes last: whoever knows more may judge it otherwise.
 
-    What was dropped, placed or fixed there stays there, and what was kicked before that.
+    What was dropped, placed or fixed there stays, and so does what was kicked before that.
 
     Args:
-        state: the fusion, changed in place; these nodes stand where they were said to lie at first.
+        state: the fusion, changed in place; these nodes stand where they stood before.
 
     Returns:
         Whether there were any.
@@ -61,7 +61,7 @@ def reunite(state: FusionState) -> bool:
         if node.mode == "static":
             state.graph.delete_nodes([node.position])
         state.graph.add_node(node.position, lay[0, 2:5], lay[0, 5:8])
-        state.nodes[name] = replace(node, index=home, mode="static")
+        state.nodes[name] = replace(node, index=home, mode="static", otherwise=())
         state.sightings.pop(name, None)
         taken = True
     return taken

@@ -63,24 +63,24 @@ class Carried:
 
     def cost(self, x: Array) -> float:
         """Its negative log likelihood at an estimate, flat, up to a constant."""
-        moved = self._moved(x)
+        moved = self._moved(x, self._turned_by(x))
         return float(0.5 * moved @ (self._matrix @ moved) - self._vector @ moved)
 
     @property
     def coupled(self) -> Integers:
         """Pairs of columns that it ties together, m × 2, as `groups.Groups` takes them."""
         tied = self._matrix != 0.0
-        for east, north in np.concatenate([self._places, self._speeds]):
-            # Turned with the map, what one of them is tied to the other is as well.
-            tied[[east, north]] = tied[east] | tied[north]
-            tied[:, [east, north]] = (tied[:, east] | tied[:, north])[:, None]
+        # Turned with the map, what one of east and north is tied to the other is as well.
+        pairs = np.concatenate([self._places, self._speeds])
+        tied[pairs] |= tied[pairs[:, ::-1]]
+        tied[:, pairs] |= tied[:, pairs[:, ::-1]]
         columns = np.where(self._at < self._size, self._at, self._at - self._size + self._width)
         return np.ascontiguousarray(columns[np.argwhere(tied)], dtype=np.int64)
 
     def add(self, chain: Chain, x: Array) -> None:
         """Add it to the normal equations at an estimate, flat; the chain always has the same groups."""
         turned_by, matrix = self._turned_by(x), self._matrix.copy()
-        vector = self._vector - matrix @ self._moved(x)
+        vector = self._vector - matrix @ self._moved(x, turned_by)
         for at in (self._places, self._speeds):
             vector[at] = turn(vector[at], turned_by)
             matrix[at] = turn(matrix[at].transpose(0, 2, 1), turned_by).transpose(0, 2, 1)
@@ -106,14 +106,13 @@ class Carried:
         was_m = self._reference[self._places] - self._base_m
         return turn_between(was_m, x[self._at[self._places]] - self._base_m)
 
-    def _moved(self, x: Array) -> Array:
+    def _moved(self, x: Array, turned_by: float) -> Array:
         """What the prior takes for deviations from its reference.
 
         R(−θ) x − r + θ J r of places: what a turn of the whole map by θ moves is along (J r, 1) only, however
         large the turn, and of that the prior knows nothing but what was said of headings.
         """
         moved = x[self._at] - self._reference
-        turned_by = self._turned_by(x)
         for at, middle in ((self._places, self._base_m), (self._speeds, np.zeros(2))):
             was, now = self._reference[at] - middle, x[self._at[at]] - middle
             moved[at] = turn(now, -turned_by) - was + turned_by * across(was)

@@ -6,15 +6,19 @@ edge by edge. A measurement that many others run beside carries little, and one 
 carries all.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from estimator.evidence import Evidence, EvidenceKind, Measurement
 from estimator.fusion import physics
+from estimator.fusion.images import doubt_m2
 from estimator.fusion.introduce import tuple_of, upper_triangle
 from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.layout import Layout
+from estimator.smoothing.otherwise import Mode, otherwise
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
@@ -36,13 +40,16 @@ SINGLE_KINDS: dict[int, EvidenceKind] = {
 }
 
 
-def explain(state: FusionState, problem: Problem, solved: Solved, name: str) -> Evidence | None:
+def explain(
+    state: FusionState, problem: Problem, solved: Solved, modes: Sequence[Mode], name: str
+) -> Evidence | None:
     """What holds the newest fix of a node.
 
     Args:
         state: the fusion after all readings.
         problem: the whole incident.
         solved: its solution, whose chain is solved here.
+        modes: its others.
         name: the node.
 
     Returns:
@@ -66,6 +73,7 @@ def explain(state: FusionState, problem: Problem, solved: Solved, name: str) -> 
     current, fixed = _currents(layout, solved, start)
     covariance = np.concatenate([current, fixed])[start : start + 3]
     covariance = 0.5 * (covariance + covariance.T)
+    doubt = doubt_m2(otherwise(layout, solved.x, modes).get(name, ()), solved.x[start : start + 2])
     across = np.concatenate([current, fixed])[:, :2]
     total = float(np.trace(covariance[:2, :2]))
     rows = problem.rows
@@ -85,7 +93,7 @@ def explain(state: FusionState, problem: Problem, solved: Solved, name: str) -> 
         node=name,
         t=epoch,
         position_m=tuple_of(solved.x[start : start + 3]),
-        covariance_m2=upper_triangle(covariance),
+        covariance_m2=upper_triangle(covariance + doubt),
         held=held,
         rejected=rejected,
         rest=max(1.0 - sum(m.share for m in held), 0.0),

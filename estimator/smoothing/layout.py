@@ -40,7 +40,6 @@ class Layout:
     Attributes:
         state: the fusion that the window belongs to.
         since_t: epoch from which on it reaches (s).
-        spacing_s: how far apart its keyframes stand (s).
         grid: epochs of the keyframes, k, ascending (s).
         walks: the moving nodes, each with six columns of every keyframe.
         times: the epoch of each walk at each keyframe, k × walks: the grid's, inside its own life; at the
@@ -55,7 +54,7 @@ class Layout:
         self, state: FusionState, since_t: float, spacing_s: float, prior: Prior | None = None
     ) -> None:
         self.state = state
-        self.since_t, self.spacing_s = since_t, spacing_s
+        self.since_t = since_t
         nodes = {node.index: node for node in state.nodes.values()}
         begins = state.ledger.table("begins")
         alive: dict[int, tuple[float, bool]] = {}

@@ -69,7 +69,7 @@ def _lay(layout: Layout, drops: Mapping[int, float]) -> dict[int, tuple[float, f
         drops: epochs of drops, by number (s).
     """
     pairs, owners = layout.state.ledger.table("pairs"), layout.state.owners
-    stood = {*layout.state.ledger.table("stands")[:, 1].tolist(), *pairs[:, 2:4].ravel().tolist()}
+    stood = {*layout.state.ledger.table("stands")[:, 1].tolist(), *np.unique(pairs[:, 2:4]).tolist()}
     found: dict[int, tuple[float, float]] = {}
     last_of: dict[str, int] = {}
     for number, name in enumerate(owners):

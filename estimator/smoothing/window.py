@@ -27,7 +27,9 @@ from estimator.smoothing.extent import (
 )
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.learn import learn
+from estimator.smoothing.likeliest import likeliest
 from estimator.smoothing.moved import moved_nodes
+from estimator.smoothing.otherwise import otherwise
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.settle import keep_keyframes, settle
 from estimator.smoothing.solve import Problem
@@ -46,6 +48,8 @@ CALM = 4.0
 """Periods after which the window is solved again though nothing has bent it."""
 SUSPENSE = 0.25
 """Periods after which it is solved again where a breadcrumb may lie elsewhere."""
+EXPOSED = 0.5
+"""The same where somebody may have gone to an image of where he seems to be."""
 GONE = 8.0
 """A window this many times as long as it may be is begun anew."""
 ITERATIONS = 4
@@ -71,6 +75,8 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
     turned = any(node.turned for node in state.nodes.values())
     age = (t - state.refreshed_t) / (rarer * period_s(state))
     waited = age >= CALM or (age >= 1.0 and state.bent_m > BENT_M)
+    # Where the window is solved rarely nobody looks: his images are asked about at the end.
+    waited = waited or (state.exposed and age >= EXPOSED and rarer == 1.0)
     waited = waited or (state.suspected and age >= SUSPENSE) or state.bent_m > JOLT_M * rarer
     if not (state.due or turned or waited):
         return
@@ -105,12 +111,15 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         layout = Layout(state, since, spacing_s(state), state.prior)
         rows = Rows(layout, since)
         rows.learn(state.noise)
-        problem = Problem(layout, rows, state.prior)
-        solved = _solved(problem, layout.start(), solved_t)
+        begun = Problem(layout, rows, state.prior)
+        judged = likeliest(begun, _solved(begun, layout.start(), solved_t))
+        problem, solved, modes, state.exposed = judged
         trimmed = trim(problem, solved)
         left = solved.chain.remainder(layout.length - 1)
         left = turned(left, layout, problem.first(solved.x), solved.x)
         settle(state, layout, solved, left.matrix)
+        for name, images in otherwise(layout, solved.x, modes).items():
+            state.nodes[name] = replace(state.nodes[name], otherwise=images)
         found = learn(state, problem, solved)
         _judge_turns(state, layout, found)
         _tell_changes(state, problem, solved)
@@ -119,6 +128,7 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         state.say("unsolved", state.newest_t, None, text)
         return False
     keep_keyframes(state, layout, solved.x)
+    state.prior = problem.prior
     if trimmed is not None:
         state.prior, state.window_t = trimmed
         ledger.forget(state.window_t, ("pairs", "singles", "drops", "poses"))

@@ -23,9 +23,12 @@ from estimator.smoothing.branch import branch, reunite
 from estimator.smoothing.elsewhere import GAIN
 from estimator.smoothing.evidence import explain
 from estimator.smoothing.extent import spacing_s as usual_s
+from estimator.smoothing.flips import WHOLE
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.learn import learn
+from estimator.smoothing.likeliest import likeliest
 from estimator.smoothing.moved import Moved, moved_nodes
+from estimator.smoothing.otherwise import admit
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.settle import keep_keyframes, settle
 from estimator.smoothing.slips import withdraw
@@ -69,8 +72,10 @@ class BatchSmoother:
             return {}
         state = online_pass(ordered, self.settings)
         problem, solved = solve_whole(state)
+        problem, solved, modes, _ = likeliest(problem, solved, WHOLE)
         solved.chain.solve()
         covariances = solved.chain.covariances()
+        admit(problem.layout, solved.x, modes, covariances)
         return tracks(problem.layout, solved.x, *covariances, lifetimes(ordered))
 
     def evidence(self, readings: Sequence[AnyReading], node: str) -> Evidence | None:
@@ -80,10 +85,11 @@ class BatchSmoother:
             KeyError: there is no such node.
         """
         state = online_pass(in_order(readings), self.settings)
-        if state.nodes[node].mode == "fixed" or not len(state.ledger.table("begins")):
+        if state.nodes[node].mode in ("fixed", "retired") or not len(state.ledger.table("begins")):
             return None
         problem, solved = solve_whole(state)
-        return explain(problem.layout.state, problem, solved, node)
+        problem, solved, modes, _ = likeliest(problem, solved, WHOLE)
+        return explain(problem.layout.state, problem, solved, modes, node)
 
     def advice(self, readings: Sequence[AnyReading], node: str) -> Advice | None:
         """What would help a node most; see `estimator.smoothing.advice.advise`.
@@ -112,37 +118,31 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     Args:
         state: the fusion after all readings, with a complete ledger; the solution's may be a copy of it.
     """
-    begins = state.ledger.table("begins")
-    since_t = float(begins[:, 0].min()) if len(begins) else state.newest_t
-    spacing = spacing_s(state, since_t, state.newest_t)
     withdraw(state)
     other = state.copy()
-    begun = [_begun(state, since_t, spacing)]
+    begun = [_begun(state)]
     if reunite(other):
-        begun.append(_begun(other, since_t, spacing))
+        begun.append(_begun(other))
     problem, solved = min(begun, key=lambda one: _misfit(*one))
-    state = problem.layout.state
-    rows = problem.rows
+    state, rows = problem.layout.state, problem.rows
     first, *later = LEARNING
     learn(state, problem, solved, first, kinds=False)
     for most in later:
-        problem = Problem(Layout(state, since_t, spacing), rows, None)
+        problem = Problem(_layout(state), rows, None)
         solved = problem.solve(solved.x, iterations=1)
         learn(state, problem, solved, most, kinds=False)
-    layout = Layout(state, since_t, spacing)
-    problem = Problem(layout, _rows(layout), None)
-    problem, solved = _settled(state, problem, problem.solve(solved.x), RESTING)
+    problem = _problem(state)
+    problem, solved = _settled(problem, problem.solve(solved.x), RESTING)
     # Last, for a node that was moved makes ranges differ like a wall.
     problem.rows.obstruct(solved.x)
     return problem, problem.solve(solved.x) if problem.rows.shift.any() else solved
 
 
-def _begun(state: FusionState, since_t: float, spacing: float) -> tuple[Problem, Solved]:
+def _begun(state: FusionState) -> tuple[Problem, Solved]:
     """A solution that is at rest enough to be learned from, with all nodes that were moved where they lie."""
-    layout = Layout(state, since_t, spacing)
-    problem = Problem(layout, _rows(layout), None)
-    solved = problem.solve(layout.start(), SLACKS_M, resting=LEARNING_RESTING)
-    return _settled(state, problem, solved, LEARNING_RESTING)
+    problem = _problem(state)
+    solved = problem.solve(problem.layout.start(), SLACKS_M, resting=LEARNING_RESTING)
+    return _settled(problem, solved, LEARNING_RESTING)
 
 
 def _misfit(problem: Problem, solved: Solved) -> float:
@@ -155,11 +155,10 @@ def _misfit(problem: Problem, solved: Solved) -> float:
     return float(solved.cost - at_best.sum() + GAIN * len(problem.layout.stands))
 
 
-def _settled(state: FusionState, problem: Problem, solved: Solved, resting: float) -> tuple[Problem, Solved]:
-    """The solution with all nodes that were moved where they lie.
+def _settled(problem: Problem, solved: Solved, resting: float) -> tuple[Problem, Solved]:
+    """The solution with all nodes that were moved where they lie: they begin anew in its state.
 
     Args:
-        state: the fusion; nodes that were moved begin anew in it.
         problem: of the whole incident.
         solved: its solution with them where they were thought to be.
         resting: see `Problem.solve`.
@@ -168,22 +167,28 @@ def _settled(state: FusionState, problem: Problem, solved: Solved, resting: floa
         moves, _ = moved_nodes(problem, solved, math.inf)
         if not moves:
             break
-        _begin_elsewhere(state, problem, solved, moves)
-        layout = Layout(state, problem.layout.since_t, problem.layout.spacing_s)
-        problem = Problem(layout, _rows(layout), None)
-        solved = problem.solve(layout.start(), SLACKS_M, resting=resting)
+        _begin_elsewhere(problem, solved, moves)
+        problem = _problem(problem.layout.state)
+        solved = problem.solve(problem.layout.start(), SLACKS_M, resting=resting)
     return problem, solved
 
 
-def _rows(layout: Layout) -> Rows:
+def _problem(state: FusionState) -> Problem:
+    layout = _layout(state)
     rows = Rows(layout, -math.inf)
-    rows.learn(layout.state.noise)
-    return rows
+    rows.learn(state.noise)
+    return Problem(layout, rows, None)
 
 
-def _begin_elsewhere(state: FusionState, problem: Problem, solved: Solved, moves: Sequence[Moved]) -> None:
+def _layout(state: FusionState) -> Layout:
+    begins = state.ledger.table("begins")
+    since_t = float(begins[:, 0].min()) if len(begins) else state.newest_t
+    return Layout(state, since_t, spacing_s(state, since_t, state.newest_t))
+
+
+def _begin_elsewhere(problem: Problem, solved: Solved, moves: Sequence[Moved]) -> None:
     """Nodes that were moved begin anew, beside the others as they are in the solution."""
-    layout = problem.layout
+    layout, state = problem.layout, problem.layout.state
     settle(state, layout, solved, solved.chain.remainder(layout.length - 1).matrix)
     keep_keyframes(state, layout, solved.x)
     for moved in moves:

@@ -1,6 +1,7 @@
 """How far somebody may have gone meanwhile."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -89,26 +90,72 @@ def test_a_unit_whose_first_displacement_came_too_late_is_followed_as_any_silent
     assert float(np.sqrt(state.graph.covariance()[rows, rows][0, 0])) > 2.5
 
 
+CORNERS = {"a1": (0.0, 0.0), "a2": (40.0, 0.0), "a3": (0.0, 30.0), "a4": (40.0, 30.0)}
+
+
+def followed(silent_s: range, others: Sequence[str] = ()) -> list[tuple[float, float, float]]:
+    """A walker among four anchors whose unit is silent for some seconds: epoch, error and its sigma (m)."""
+    chance = np.random.default_rng(6)
+    tracker = KirchhoffTracker(TrackerSettings())
+    tracker.fold([Node(t=0.0, node=n, role="anchor", position_m=(*m, 0.0)) for n, m in CORNERS.items()])
+    walkers = {name: 10.0 + 3.0 * i for i, name in enumerate(["ff1", *others])}
+    for name, north in walkers.items():
+        place = (5.0, north, 0.0)
+        tracker.fold([Node(t=0.0, node=name, role="responder", position_m=place, sigma_m=0.3)])
+    found = []
+    for second in range(1, 31):
+        t, seen = float(second), list[AnyReading]()
+        for name, north in walkers.items():
+            at = np.array([5.0 + second, north])
+            if second not in silent_s or name != "ff1":
+                e, n = (np.array([1.0, 0.0]) + chance.normal(0.0, 0.03, 2)).tolist()
+                seen.append(Displacement(t=t, from_t=t - 1.0, node=name, delta_m=(e, n, 0.0)))
+            for anchor, corner in CORNERS.items():
+                range_m = float(np.hypot(*(at - corner)) + chance.normal(0.0, 0.1))
+                seen.append(Range(t=t, a=name, b=anchor, range_m=range_m, technology="uwb"))
+        tracker.fold(seen)
+        ff1 = {e.node: e for e in tracker.estimates()}["ff1"]
+        assert ff1.position_m is not None
+        assert ff1.covariance_m2 is not None
+        off_m = float(np.hypot(ff1.position_m[0] - 5.0 - ff1.t, ff1.position_m[1] - 10.0))
+        found.append((ff1.t, off_m, math.sqrt(ff1.covariance_m2[0] + ff1.covariance_m2[3])))
+    return found
+
+
 def test_who_walks_on_when_his_unit_falls_silent_is_shown_where_he_is_heard() -> None:
     """Seconds of ranges wait for displacements that may still come: they were made at different places."""
-    chance = np.random.default_rng(6)
-    corners = {"a1": (0.0, 0.0), "a2": (40.0, 0.0), "a3": (0.0, 30.0), "a4": (40.0, 30.0)}
-    tracker = KirchhoffTracker(TrackerSettings())
-    tracker.fold([Node(t=0.0, node=n, role="anchor", position_m=(*m, 0.0)) for n, m in corners.items()])
-    tracker.fold([Node(t=0.0, node="ff1", role="responder", position_m=(5.0, 10.0, 0.0), sigma_m=0.3)])
-    for second in range(1, 31):
-        t, at = float(second), np.array([5.0 + second, 10.0])
-        seen: list[AnyReading] = []
-        if second <= 15:
-            e, n = (np.array([1.0, 0.0]) + chance.normal(0.0, 0.03, 2)).tolist()
-            seen.append(Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=(e, n, 0.0)))
-        for name, place in corners.items():
-            range_m = float(np.hypot(*(at - place)) + chance.normal(0.0, 0.1))
-            seen.append(Range(t=t, a="ff1", b=name, range_m=range_m, technology="uwb"))
-        tracker.fold(seen)
-        found = {e.node: e for e in tracker.estimates()}["ff1"]
-        assert found.position_m is not None
-        assert found.covariance_m2 is not None
-        off_m = np.hypot(found.position_m[0] - 5.0 - found.t, found.position_m[1] - 10.0)
+    for _, off_m, sigma_m in followed(range(16, 31)):
         assert off_m < 1.2
-        assert off_m < 4.0 * math.sqrt(found.covariance_m2[0] + found.covariance_m2[3])
+        assert off_m < 4.0 * sigma_m
+
+
+@pytest.mark.parametrize("silent_s", [range(16, 17), range(16, 19), range(10, 26)])
+@pytest.mark.parametrize("others", [(), ("ff2",)])
+def test_whose_unit_reports_again_is_not_shown_where_he_was_heard_before(
+    silent_s: range, others: tuple[str, ...]
+) -> None:
+    for t, off_m, sigma_m in followed(silent_s, others):
+        if t >= silent_s.stop:
+            assert off_m < 0.5
+            assert off_m < 4.0 * sigma_m
+
+
+def test_a_lost_packet_takes_no_steps_from_those_who_have_lost_none() -> None:
+    """Who hears them both is held against the one before, and against the other where his own way has led."""
+    readings: list[AnyReading] = []
+    for second in range(1, 60):
+        ahead = (1.0, 0.0, 0.0)
+        readings.append(Displacement(t=second, from_t=second - 1.0, node="ff2", delta_m=ahead))
+        readings.append(Range(t=second + 0.1, a="ff1", b="ff2", range_m=5.0, technology="uwb"))
+        if second % 2:
+            readings.append(Displacement(t=second + 0.2, from_t=second - 0.8, node="ff1", delta_m=ahead))
+    state = FusionState()
+    entered = {"ff1": (0.0, 0.0, 0.0), "ff2": (0.0, 5.0, 0.0)}
+    named = [Node(t=0.0, node=n, role="responder", position_m=m, sigma_m=0.1) for n, m in entered.items()]
+    fold_tick(state, 0.5, named)
+    for tick in range(1, 62):
+        fold_tick(state, float(tick), [r for r in readings if tick - 1 <= r.t < tick])
+    steps = state.ledger.table("steps")
+    own = steps[steps[:, 1] == state.nodes["ff2"].index]
+    assert own[:, 3].sum() == pytest.approx(59.0)
+    assert own[:, 3].min() > 0.0

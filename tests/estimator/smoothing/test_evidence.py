@@ -1,5 +1,7 @@
 """Why a fix is where it is, and what would make it surer."""
 
+import math
+
 import pytest
 
 from estimator import trackers
@@ -7,7 +9,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.position import Position
 from estimator.measurements.range import Range
 from estimator.trackers.base import TrackerSettings
-from tests.estimator.walks import two_responders
+from tests.estimator.walks import behind_a_wall, two_responders
 
 SETTINGS = TrackerSettings()
 
@@ -40,6 +42,19 @@ def test_an_absurd_range_is_listed_as_rejected() -> None:
     assert found is not None
     assert [m.value for m in found.rejected] == [90.0]
     assert found.rejected[0].weight < 0.01
+
+
+def test_a_range_through_a_wall_is_too_long_by_what_its_radio_said() -> None:
+    """The smoothed view takes off what it thinks that walls add; evidence keeps to what was measured."""
+    found = trackers.evidence("kirchhoff", SETTINGS, behind_a_wall(), "ff2")
+    assert found is not None
+    ways = trackers.smoother("kirchhoff", SETTINGS).smooth(behind_a_wall())
+    beacon = ways["beacon"][-1].position_m
+    walled = [m for m in found.held if m.kind == "range" and m.b == "beacon"]
+    assert max(m.residual for m in walled) > 2.0
+    for measured in walled:
+        here = next(point.position_m for point in ways["ff2"] if point.t == measured.t)
+        assert measured.residual == pytest.approx(measured.value - math.dist(here, beacon), abs=0.05)
 
 
 def test_an_unknown_node_has_no_evidence() -> None:
