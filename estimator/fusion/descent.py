@@ -27,6 +27,7 @@ class Found(NamedTuple):
         residual: z − h(x) of each, m.
         predicted: variance of each prediction by the state's covariance, m.
         good: probability that each has the good noise, m.
+        doubted: following them had made the fit clearly worse, so that the estimate has not gone all the way.
     """
 
     outcome: int
@@ -35,6 +36,7 @@ class Found(NamedTuple):
     residual: Array
     predicted: Array
     good: Array
+    doubted: bool
 
 
 @njit(cache=True, error_model="numpy")
@@ -56,10 +58,10 @@ def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: i
     ahead, forecast = np.empty((m, WIDTH)), np.empty(m)
     factor, unscale, predicted, good = np.zeros((n, n)), np.empty(n), np.empty(m), np.empty(m)
     if not factorised(prior, factor, unscale):
-        return Found(INDEFINITE, matrix, x, residual, predicted, good)
+        return Found(INDEFINITE, matrix, x, residual, predicted, good, False)
     linearise(table, columns, x, jacobian, residual)
     variances(columns, jacobian, factor, unscale, predicted)
-    cost = misfit(table, residual, x - start, prior, pull)
+    cost, doubted = misfit(table, residual, x - start, prior, pull), False
     for _ in range(iterations):
         weighted = weigh(residual, sigma, predicted, outliers, shift, spread)
         good[:] = weighted.good
@@ -67,9 +69,10 @@ def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: i
         gradient = pull - np.dot(prior, x - start)
         scatter(matrix, gradient, columns, jacobian, weighted.information, weighted.residual)
         if not np.isfinite(gradient).all() or not factorised(matrix, factor, unscale):
-            return Found(UNSOLVABLE, matrix, x, residual, predicted, good)
+            return Found(UNSOLVABLE, matrix, x, residual, predicted, good, doubted)
         step = solved(factor, unscale, gradient)
         before, forecast[:] = x.copy(), residual
+        doubted = False
         for _ in range(HALVINGS):
             # The step is halved while it makes the fit clearly worse.
             x = before + step
@@ -77,7 +80,11 @@ def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: i
             reached = misfit(table, residual, x - start, prior, pull)
             if reached <= cost + 1.0:
                 break
-            step = 0.5 * step
+            step, doubted = 0.5 * step, True
+        if reached > cost + 1.0:
+            x = before.copy()
+            linearise(table, columns, x, ahead, residual)
+            break
         cost = reached
         rests = True
         for r in range(m):
@@ -90,8 +97,17 @@ def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: i
             break
         jacobian[:] = ahead
         variances(columns, jacobian, factor, unscale, predicted)
+    if doubted:
+        # What the estimate has not gone to after all must not make it sure of where it stays instead.
+        predicted[:] = 0.0
+        weighted = weigh(residual, sigma, predicted, outliers, shift, spread)
+        good[:] = weighted.good
+        matrix[:] = prior
+        scatter(matrix, np.zeros(n), columns, ahead, weighted.information, weighted.residual)
+        if factorised(matrix, factor, unscale):
+            variances(columns, ahead, factor, unscale, predicted)
     outcome = SOLVED if np.isfinite(x).all() else UNSOLVABLE
-    return Found(outcome, matrix, x, residual, predicted, good)
+    return Found(outcome, matrix, x, residual, predicted, good, doubted)
 
 
 @njit(cache=True, error_model="numpy")

@@ -4,8 +4,9 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion.descent import INDEFINITE, SOLVED, Found, descend
+from estimator.fusion.ledger import RANGE
 from estimator.fusion.links import ERROR, KEPT
-from estimator.fusion.rows import LINK, NOMINAL, SIGMA, SOURCE
+from estimator.fusion.rows import KIND, LINK, NOMINAL, SIGMA, SOURCE
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
@@ -35,6 +36,9 @@ def update(state: FusionState, table: Array) -> None:
         return
     state.bent_m += bend_m(graph, found.x - graph.reference)
     graph.settle(found.matrix, found.x)
+    # Who passes a kicked breadcrumb is held back by it: its window is not to wait.
+    refused = (found.good < SAME_PLACE) & (table[:, KIND] == RANGE)
+    state.suspected = state.suspected or (found.doubted and bool(refused.any()))
     _learn(state, table, found)
 
 

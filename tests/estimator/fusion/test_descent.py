@@ -131,6 +131,8 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
             if reached <= cost + 1.0:
                 break
             step = 0.5 * step
+        if reached > cost + 1.0:
+            return before
         cost = reached
         forecast = linear - whole @ (x - before)
         if (np.abs(residual - forecast) < BENT * np.sqrt(sigma**2 + predicted)).all():
@@ -154,3 +156,16 @@ def test_an_information_matrix_that_is_not_positive_definite_is_told_apart() -> 
     table, (prior, pull, start) = some_table(chance, 3), some_state(chance)
     assert descend(table, -prior, pull, start, 6).outcome == INDEFINITE
     assert descend(table, prior, np.full(N, np.nan), start, 6).outcome == UNSOLVABLE
+
+
+def test_nobody_is_surer_of_where_he_stays_by_a_fix_that_he_does_not_follow() -> None:
+    """Who is known to half a metre along one line is told to be three metres along it: it is an outlier."""
+    along, across = np.array([1.0, 1.0, 0.0]) / np.sqrt(2.0), np.array([1.0, -1.0, 0.0]) / np.sqrt(2.0)
+    known = np.outer(along, along) / 0.5**2 + np.outer(across, across) / 5.0**2 + np.diag([0.0, 0.0, 1.0])
+    node, noise = Variable("position", "0"), physics.FIX_NOISE
+    fix = [Single(node, axis, float(4.0 * along[axis]), 0.05, noise) for axis in range(3)]
+    found = descend(table_of({node: 0}, fix, np.empty((0, FIELDS))), known, np.zeros(3), np.zeros(3), 6)
+    sure = np.linalg.inv(found.matrix)
+    assert np.linalg.norm(found.x - 4.0 * along) > 3.0
+    assert along @ sure @ along > 0.9 * 0.5**2
+    assert (found.good[:2] < 0.5).all()
