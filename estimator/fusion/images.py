@@ -18,6 +18,7 @@ class Image(msgspec.Struct, frozen=True, array_like=True):
         flip: −1 where north and south are exchanged first; else 1.
         east_m: how far it is moved then.
         north_m: the same.
+        turned_rad: by how much what a unit faces turns along; nil where it goes on as it is.
     """
 
     cosine: float = 1.0
@@ -25,6 +26,7 @@ class Image(msgspec.Struct, frozen=True, array_like=True):
     flip: float = 1.0
     east_m: float = 0.0
     north_m: float = 0.0
+    turned_rad: float = 0.0
 
     @property
     def matrix(self) -> Array:
@@ -49,18 +51,21 @@ class Image(msgspec.Struct, frozen=True, array_like=True):
         """The image that leads back."""
         matrix = self.matrix.T
         east, north = (-matrix @ self.shift_m).tolist()
-        return Image(self.cosine, -self.sine if self.flip > 0 else self.sine, self.flip, east, north)
+        sine = -self.sine if self.flip > 0 else self.sine
+        return Image(self.cosine, sine, self.flip, east, north, -self.turned_rad)
 
     def after(self, first: Self) -> "Image":
         """The image of an image."""
         matrix = self.matrix @ first.matrix
         east, north = self.of(first.shift_m).tolist()
-        return Image(float(matrix[0, 0]), float(matrix[1, 0]), self.flip * first.flip, east, north)
+        turned = self.turned_rad + first.turned_rad
+        cosine, sine = float(matrix[0, 0]), float(matrix[1, 0])
+        return Image(cosine, sine, self.flip * first.flip, east, north, turned)
 
     def through(self, here_m: Array, there_m: Array) -> "Image":
         """The same, moved so that one place goes to another, 2 each (m)."""
         east, north = (there_m - self.matrix @ here_m).tolist()
-        return Image(self.cosine, self.sine, self.flip, east, north)
+        return Image(self.cosine, self.sine, self.flip, east, north, self.turned_rad)
 
 
 class Otherwise(msgspec.Struct, frozen=True, array_like=True):

@@ -45,6 +45,8 @@ class Prior(NamedTuple):
                     turn[first : first + 2, first : first + 2] = image.matrix
                     reference[first : first + 2] = image.matrix @ reference[first : first + 2]
                 reference[start : start + 2] += image.shift_m
+                if kind == "walk":
+                    reference[start + 3] += image.turned_rad
             start += SIZES[kind]
         return self._replace(
             matrix=turn @ self.matrix @ turn.T, vector=turn @ self.vector, reference=reference

@@ -80,6 +80,7 @@ def _moved(layout: Layout, x: Array, images: Mapping[int, Image]) -> Array:
             image.move(states)
         elif image is not None:
             states[:, :2] = image.of(states[:, :2])
+            states[:, 3] += image.turned_rad
     for number, image in images.items():
         if number in layout.stands:
             start = size + layout.stands[number]

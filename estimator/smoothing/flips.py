@@ -190,7 +190,7 @@ def flips(
         effort: how many are asked about.
     """
     found: list[Flip] = []
-    for radios in (_radios(heard), _radios(heard.some(heard.t > now - RECENT_S))):
+    for radios in (radios_of(heard), radios_of(heard.some(heard.t > now - RECENT_S))):
         for radio_m in radios:
             off_m = way_m - radio_m
             for k in _nearest(np.hypot(*off_m.T), walk, loose, effort):
@@ -225,15 +225,15 @@ def exposed(heard: Heard, now: float) -> bool:
         now: end of the window (s).
     """
     last = heard.some(heard.t > now - RECENT_S)
-    radios = _radios(last)
+    radios = radios_of(last)
     images = [image for image, _ in _across(radios, last.here_m)] or [
         image for radio_m in radios for image in _around(radio_m, 0.0)
     ]
     return any(not last.contradicts(image) for image in images)
 
 
-def _radios(heard: Heard) -> list[Array]:
-    """Where those radios are that tell most (m)."""
+def radios_of(heard: Heard) -> list[Array]:
+    """Where those radios are that tell most of where somebody is (m)."""
     numbers, first, index = np.unique(heard.radio, return_index=True, return_inverse=True)
     told = np.bincount(index, heard.told, len(numbers))
     most = np.argsort(-told, kind="stable")[:RADIOS]

@@ -4,7 +4,7 @@ A parabola about one way knows nothing of its images. So the window is solved fr
 likeliest counts, and how likely the others are is told along with it.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from estimator.smoothing.layout import Layout, Walk
 from estimator.smoothing.otherwise import Mode, same_place
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
+from estimator.smoothing.turns import reports_from, turn, turns
 from estimator.smoothing.walks import STATES
 
 LEAST_TRIED, WAYS = 2, 3
@@ -25,6 +26,7 @@ SOON = 4
 """Iterations after which an image is given up that is hopeless."""
 FAR, HOPELESS = 600.0, 50.0
 """What an image costs more, in log likelihood, that is not solved at all, and that is given up."""
+SAME_RAD = 0.4
 BEGINNINGS = 3
 """Images of a way that put somebody at the same place now, from keyframes this near, are the same."""
 
@@ -46,11 +48,25 @@ class Judged(NamedTuple):
 
 
 class _Tried(NamedTuple):
-    """A solution, where it puts somebody at epochs that are asked for (m), and the image it began from."""
+    """A solution, where it puts somebody at epochs that are asked for (m), and the image it began from.
+
+    Attributes:
+        solved: the solution.
+        places_m: the places, k × 2.
+        facing_rad: where it is one of several headings, the last of them; else none.
+        flip: the image.
+    """
 
     solved: Solved
     places_m: Array
+    facing_rad: float | None
     flip: Flip
+
+    def same(self, other: Self) -> bool:
+        """Whether both are the same solution: one of a heading may not be at rest yet far from its start."""
+        if self.facing_rad is not None and other.facing_rad is not None:
+            return bool(np.cos(self.facing_rad - other.facing_rad) > np.cos(SAME_RAD))
+        return same_place(self.places_m, other.places_m)
 
 
 def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged:
@@ -78,9 +94,13 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
 
 
 def _loose(problem: Problem, solved: Solved) -> list[int]:
-    """Those walks that ranges alone have led."""
+    """Those walks that ranges alone have led, or a unit that may have faced anything."""
     walks = enumerate(problem.layout.walks)
-    return [i for i, walk in walks if walk.node.moving and loose_steps(problem, solved, i).any()]
+    return [
+        i
+        for i, walk in walks
+        if walk.node.moving and (walk.node.turned or loose_steps(problem, solved, i).any())
+    ]
 
 
 def _judged(problem: Problem, solved: Solved, index: int, effort: Effort) -> tuple[Solved, list[Mode], bool]:
@@ -89,11 +109,15 @@ def _judged(problem: Problem, solved: Solved, index: int, effort: Effort) -> tup
     walk, now = layout.walks[index], float(layout.grid[-1])
     problem.rows.widen(solved.x, solved.linear.jacobian)
     loose, heard = loose_steps(problem, solved, index), heard_by(problem, solved, walk)
-    found = flips(heard, _way(layout, solved.x, index)[:, :2], walk, loose, now, effort)
+    way_m = _way(layout, solved.x, index)[:, :2]
+    found = flips(heard, way_m, walk, loose, now, effort) if loose.any() else []
+    if walk.node.turned:
+        found += turns(heard, way_m, walk, reports_from(layout, index))
     begun = [*_again(layout, walk, loose), *_cheapest(problem, solved.x, index, loose, found)]
     best, *others = _solutions(problem, solved, index, loose, begun, effort)
     last = bool(loose[walk.last - 1])
-    return best.solved, _modes(layout, best, others, walk, last), last and exposed(heard, now)
+    modes = _modes(layout, best, others, walk, last or walk.node.turned)
+    return best.solved, modes, last and exposed(heard, now)
 
 
 def _way(layout: Layout, x: Array, index: int) -> Array:
@@ -105,6 +129,9 @@ def _way(layout: Layout, x: Array, index: int) -> Array:
 def _flipped(layout: Layout, x: Array, index: int, loose: NDArray[np.bool_], flip: Flip) -> Array:
     """An estimate with a way where an image has it, flat; what a unit has reported goes along as it is."""
     there, walk = x.copy(), layout.walks[index]
+    if flip.image.turned_rad != 0.0:
+        turn(layout, there, walk, _way(layout, there, index), flip)
+        return there
     end = end_of(flip, loose) - flip.since
     states = _way(layout, there, index)[flip.since : walk.last + 1]
     if walk.way is None:
@@ -124,7 +151,7 @@ def _again(layout: Layout, walk: Walk, loose: NDArray[np.bool_]) -> list[Flip]:
     return [
         Flip(k, other.way)
         for k, other in zip(since, known, strict=True)
-        if walk.first <= k < walk.last and loose[k]
+        if walk.first <= k < walk.last and (loose[k] or other.way.turned_rad != 0.0)
     ]
 
 
@@ -148,7 +175,13 @@ def _solutions(
     """The solutions that images of a way lead to, that which is to be shown first."""
     layout, walk = problem.layout, problem.layout.walks[index]
     asked = slice(walk.first if effort.whole else walk.last, walk.last + 1)
-    found = [_Tried(solved, _way(layout, solved.x, index)[asked, :2], Flip(0, Image()))]
+
+    def tried_of(one: Solved, flip: Flip) -> _Tried:
+        way = _way(layout, one.x, index)
+        turned = walk.node.turned and (flip.image.turned_rad != 0.0 or one is solved)
+        return _Tried(one, way[asked, :2], float(way[walk.last, 3]) if turned else None, flip)
+
+    found = [tried_of(solved, Flip(0, Image()))]
     tried: list[tuple[int, Array]] = []
     for flip in begun:
         x = _flipped(layout, solved.x, index, loose, flip)
@@ -161,12 +194,12 @@ def _solutions(
         there = _solved(problem, x, found[0].solved.cost + HOPELESS)
         if there is None:
             continue
-        places_m = _way(layout, there.x, index)[asked, :2]
-        same = next((k for k, one in enumerate(found) if same_place(one.places_m, places_m)), None)
+        new = tried_of(there, flip)
+        same = next((k for k, one in enumerate(found) if one.same(new)), None)
         if same is None:
-            found.append(_Tried(there, places_m, flip))
+            found.append(new)
         elif there.cost < found[same].solved.cost - CLEARER:
-            found[same] = _Tried(there, places_m, found[same].flip)
+            found[same] = new._replace(flip=found[same].flip)
     best = min(found, key=lambda one: one.solved.cost)
     if best.solved.cost > found[0].solved.cost - CLEARER:
         best = found[0]

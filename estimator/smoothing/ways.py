@@ -32,10 +32,13 @@ class Way:
         begin_t: epoch at which it begins (s).
         steps: its rows of the ledger's `steps`, in order of epoch.
         factors: learned variances over the assumed ones: of position, of heading.
+
+    Attributes:
+        begin_t: epoch at which it begins (s).
     """
 
     def __init__(self, begin_t: float, steps: Array, factors: tuple[float, float]) -> None:
-        self._begin = begin_t
+        self.begin_t = begin_t
         self._marks, self._sums = summed(begin_t, steps, *factors)
 
     def bridged(self, t: Array) -> Array:
@@ -56,7 +59,7 @@ class Way:
     def between(self, since: Array, until: Array) -> Array:
         """What lies between epochs, m × 12, moments from `since` on; silence adds what it lets wander."""
         since, until = np.ascontiguousarray(since), np.ascontiguousarray(until)
-        return np.asarray(sums_between(self._begin, self._marks, self._sums, since, until))
+        return np.asarray(sums_between(self.begin_t, self._marks, self._sums, since, until))
 
     def lay_out(self, mine: int, numbers: Integers, since: Array, until: Array, to: Laid) -> None:
         """Put what lies between epochs where it belongs, of those of m ends that are this node's.
@@ -68,7 +71,7 @@ class Way:
             until: their own epochs, m (s).
             to: takes it.
         """
-        lay_out(self._begin, self._marks, self._sums, mine, numbers, since, until, to)
+        lay_out(self.begin_t, self._marks, self._sums, mine, numbers, since, until, to)
 
 
 @njit(cache=True)

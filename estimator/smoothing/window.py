@@ -35,6 +35,7 @@ from estimator.smoothing.settle import keep_keyframes, settle
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
 from estimator.smoothing.turned import turned
+from estimator.smoothing.turns import reports_from
 from estimator.smoothing.walks import STATES
 
 PERIOD_S = 8.0
@@ -72,7 +73,8 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
         if not len(state.ledger.table("begins")) and not len(state.ledger.table("stands")):
             return
         state.begun_t = state.refreshed_t = t
-    turned = any(node.turned for node in state.nodes.values())
+    # Whose heading is one of two is looked at as often as who may be at an image.
+    turned = any(node.turned and not node.otherwise for node in state.nodes.values())
     age = (t - state.refreshed_t) / (rarer * period_s(state))
     waited = age >= CALM or (age >= 1.0 and state.bent_m > BENT_M)
     # Where the window is solved rarely nobody looks: his images are asked about at the end.
@@ -171,17 +173,19 @@ def _best(problem: Problem, x: Array) -> Solved:
     for i, walk in enumerate(layout.walks):
         if not layout.state.nodes[walk.node.node].turned:
             continue
-        alive, column = slice(walk.first, walk.last + 1), STATES * i
+        since, column = reports_from(layout, i), STATES * i
+        alive = slice(since, walk.last + 1)
         for turn in np.arange(1, physics.TURNS) * (2.0 * np.pi / physics.TURNS):
             there = best.x.copy()
             keyframes = there[:size].reshape(layout.length, layout.width)
             places = keyframes[alive, column : column + 2]
-            middle = places.mean(axis=0)
+            # Where a unit is switched on later, its bearer was already there.
+            middle = places.mean(axis=0) if since == walk.first else places[0]
             cosine, sine = np.cos(turn), np.sin(turn)
             keyframes[alive, column : column + 2] = middle + (places - middle) @ np.array(
                 [[cosine, sine], [-sine, cosine]]
             )
-            keyframes[alive, column + 3] += turn
+            keyframes[walk.first : walk.last + 1, column + 3] += turn
             tried = problem.solve(there, SLACKS_M, TURN_ITERATIONS)
             if tried.cost < best.cost - 1e-3:
                 best = tried
@@ -206,5 +210,6 @@ def _judge_turns(state: FusionState, layout: Layout, found: Array) -> None:
     for i, walk in enumerate(layout.walks):
         node = state.nodes[walk.node.node]
         sigma = float(np.sqrt(max(found[walk.last, i, 3, 3], 0.0)))
-        if node.turned and sigma < FOUND_RAD:
+        one_of_two = any(other.of == node.index and other.way.turned_rad != 0.0 for other in node.otherwise)
+        if node.turned and sigma < FOUND_RAD and not one_of_two:
             state.nodes[node.node] = replace(node, turned=False)

@@ -1,0 +1,80 @@
+"""Headings that a unit may have instead, whose bearer may have faced anything at first.
+
+Ranges to one radio tell how far a straight way has gone, not to which side of the line from where it began:
+the way turned to the other side fits as well, until he turns or another radio hears him.
+"""
+
+import numpy as np
+
+from estimator.fusion.images import Image, turned_about
+from estimator.graph.dense import Array
+from estimator.smoothing.flips import Flip, Heard, radios_of
+from estimator.smoothing.layout import Layout, Walk
+
+TURNS = 8
+SAME_S = 1e-6
+
+
+def reports_from(layout: Layout, index: int) -> int:
+    """The first keyframe of a walk since when its unit reports: before that nothing turns with what it faces.
+
+    Args:
+        layout: of the window.
+        index: of a walk that has a unit.
+    """
+    walk = layout.walks[index]
+    if walk.way is None:
+        return walk.first
+    times = layout.times[walk.first : walk.last, index]
+    return walk.first + int(np.searchsorted(times, walk.way.begin_t - SAME_S))
+
+
+def turns(heard: Heard, way_m: Array, walk: Walk, since: int) -> list[Flip]:
+    """Turns of a unit's whole way in a window about where it begins.
+
+    Args:
+        heard: what its bearer has heard.
+        way_m: where he was at each keyframe, k × 2 (m).
+        walk: the walk.
+        since: the keyframe at which it begins.
+    """
+    radios = radios_of(heard)
+    if not radios:
+        # Nothing tells one heading from another: they are no few, and his covariance knows all of them.
+        return []
+    start_m = way_m[since]
+    led = way_m[walk.last] - start_m
+    angles = [2.0 * np.pi * j / TURNS for j in range(1, TURNS)]
+    for radio_m in radios:
+        towards = radio_m - start_m
+        mirror = 2.0 * (np.arctan2(towards[1], towards[0]) - np.arctan2(led[1], led[0]))
+        angles.insert(0, float(mirror))
+    return [Flip(since, facing(start_m, angle)) for angle in angles]
+
+
+def turn(layout: Layout, x: Array, walk: Walk, states: Array, flip: Flip) -> None:
+    """Turn a unit's whole way in an estimate, and what its bearer has dropped along with it.
+
+    Args:
+        layout: of the window.
+        x: the estimate, flat; changed in place.
+        walk: the walk.
+        states: its states at all keyframes, k × 6; a view of `x`.
+        flip: the turn, and since when it is one.
+    """
+    image, here = flip.image, states[flip.since : walk.last + 1]
+    here[:, :2] = image.of(here[:, :2])
+    states[walk.first : walk.last + 1, 3] += image.turned_rad
+    drops, size = layout.state.ledger.table("drops"), layout.length * layout.width
+    dropped = (drops[:, 2] == walk.number) & (drops[:, 0] >= layout.grid[flip.since])
+    for number in drops[dropped, 1].astype(int).tolist():
+        if number in layout.stands:
+            start = size + layout.stands[number]
+            x[start : start + 2] = image.of(x[start : start + 2])
+
+
+def facing(centre_m: Array, by_rad: float) -> Image:
+    """A turn to the left about a place, with which what a unit faces turns along."""
+    image = turned_about(centre_m, by_rad)
+    within = float((by_rad + np.pi) % (2.0 * np.pi) - np.pi)
+    return Image(image.cosine, image.sine, image.flip, image.east_m, image.north_m, within)
