@@ -31,7 +31,7 @@ _CODES = (
 _WRONG_TYPE = re.compile(r"Expected `[^`]*`(, got `|$)")
 _PLACE = re.compile(r" - at `\$\.?([^`]*)`\Z")
 _NAMED_FIELD = re.compile(r"field `([^`]{1,100})`")
-_epoch = attrgetter("t")
+_epoch = attrgetter("until_t")
 
 
 class Judged(msgspec.Struct, frozen=True, kw_only=True):
@@ -108,7 +108,7 @@ def _judge_each(body: bytes, max_readings: int, now: float | None) -> Judged:
         except (msgspec.DecodeError, RecursionError) as error:
             raise _no_json(error) from error
         else:
-            if reading.t > horizon:
+            if reading.until_t > horizon:
                 rejected.append(_in_future(reading, horizon, index))
             else:
                 accepted.append(reading)
@@ -166,10 +166,11 @@ def _horizon(sent: float | None, now: float | None) -> float:
 
 
 def _in_future(reading: AnyReading, horizon: float, index: int) -> FieldError:
-    ahead_s = reading.t - horizon + FUTURE_TOLERANCE_S
+    ahead_s = reading.until_t - horizon + FUTURE_TOLERANCE_S
+    what = "`t`" if reading.until_t == reading.t else "the last sample after `t`"
     return FieldError(
         code="time_in_future",
-        message=f"`t` is {ahead_s:.0f} s ahead of the time of sending: check the clocks of unit and gateway",
+        message=f"{what} is {ahead_s:.0f} s ahead of the time of sending: check clocks of unit and gateway",
         index=index,
         field="t",
     )

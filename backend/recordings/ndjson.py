@@ -165,7 +165,7 @@ def _new_batch(line: Line, incident: str, clock: Clock) -> NewBatch:
     aside = {fault.index for fault in line.rejected}
     rejected = line.rejected + tuple(fault for fault in judged.rejected if fault.index not in aside)
     count = len(judged.accepted) + len(judged.rejected)
-    newest = max((reading.t for reading in judged.accepted), default=0.0)
+    newest = max((reading.until_t for reading in judged.accepted), default=0.0)
     received = line.received if line.received is not None else line.sent
     return NewBatch(
         incident=incident,

@@ -47,7 +47,7 @@ def evidence_of_log(database_url: str, head: Head, node: str, t: float | None) -
         NotFound: no reading up to that moment names the node.
         LogUnreadable: the database failed.
     """
-    readings = [reading for reading in _whole_log(database_url, head) if t is None or reading.t <= t]
+    readings = [reading for reading in _whole_log(database_url, head) if t is None or reading.until_t <= t]
     try:
         return trackers.evidence(head.tracker, head.settings, readings, node)
     except KeyError as error:

@@ -11,7 +11,7 @@ from estimator.measurements import AnyReading
 LONGEST_PIECE = 256
 """Readings folded in one go: after each piece other incidents may have their turn."""
 
-_epoch = attrgetter("t")
+_epoch = attrgetter("until_t")
 
 
 class Piece(msgspec.Struct, frozen=True):
@@ -31,9 +31,9 @@ class Piece(msgspec.Struct, frozen=True):
 def pieces(readings: Sequence[AnyReading], newest_t: float | None) -> Iterator[Piece]:
     """Cut the readings of a batch where incident time passes a whole second.
 
-    Incident time is the running maximum of the epochs. Row `s` is the picture after everything that was
-    folded before incident time passed `s`; where it passes several at once, only the first gets a row: the
-    others would be the same.
+    Incident time is the running maximum of the epochs up to which readings tell. Row `s` is the picture after
+    everything that was folded before incident time passed `s`; where it passes several at once, only the
+    first gets a row: the others would be the same.
 
     Args:
         readings: of one batch.
@@ -42,7 +42,7 @@ def pieces(readings: Sequence[AnyReading], newest_t: float | None) -> Iterator[P
     piece: list[AnyReading] = []
     row: int | None = None
     for reading in sorted(readings, key=_epoch):
-        passes = newest_t is not None and reading.t > math.ceil(newest_t)
+        passes = newest_t is not None and reading.until_t > math.ceil(newest_t)
         if piece and (passes or len(piece) == LONGEST_PIECE):
             assert newest_t is not None  # noqa: S101 - a piece has readings, and they have epochs
             yield Piece(piece, row, newest_t)
@@ -50,7 +50,7 @@ def pieces(readings: Sequence[AnyReading], newest_t: float | None) -> Iterator[P
         if passes:
             row = row_of(newest_t)
         piece.append(reading)
-        newest_t = reading.t if newest_t is None else max(newest_t, reading.t)
+        newest_t = reading.until_t if newest_t is None else max(newest_t, reading.until_t)
     if piece and newest_t is not None:
         yield Piece(piece, row, newest_t)
 

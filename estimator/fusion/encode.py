@@ -11,6 +11,8 @@ from estimator.fusion.state import FusionState
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.record import ArrayRecord, pack, unpack
 from estimator.graph.variable import Variable
+from estimator.inertial.record import NavigationRecord, navigation_of
+from estimator.inertial.record import record_of as navigation_record_of
 from estimator.measurements import AnyReading
 
 
@@ -50,6 +52,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     prior: PriorRecord | None
     uncalibrated: dict[str, float]
     bent_m: float
+    navigations: dict[str, NavigationRecord]
 
 
 def record_of(state: FusionState) -> FusionRecord:
@@ -88,6 +91,7 @@ def record_of(state: FusionState) -> FusionRecord:
         ),
         dict(state.uncalibrated),
         state.bent_m,
+        {name: navigation_record_of(known) for name, known in state.navigations.items()},
     )
 
 
@@ -109,6 +113,7 @@ def state_of(record: FusionRecord) -> FusionState:
     state.suspected, state.exposed = record.suspected, record.exposed
     state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
     state.uncalibrated, state.bent_m = record.uncalibrated, record.bent_m
+    state.navigations = {name: navigation_of(known) for name, known in record.navigations.items()}
     if record.prior is not None:
         matrix, vector, reference = (unpack(a) for a in record.prior.arrays)
         state.prior = Prior(tuple(record.prior.keys), matrix, vector, reference, record.prior.epochs)

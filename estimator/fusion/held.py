@@ -8,7 +8,7 @@ from estimator.fusion.introduce import place
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.rows import Single
 from estimator.fusion.state import FusionState
-from estimator.fusion.way import offset_of
+from estimator.fusion.way import offset_of, turned_m
 from estimator.graph.robust import Mixture
 from estimator.measurements.altitude import Altitude, Pressure, height_above
 from estimator.measurements.position import Position, east_north_up
@@ -37,6 +37,8 @@ def fix(state: FusionState, reading: Position) -> list[Single]:
     for i in range(3):
         spread = max(sigma[i], physics.SIGMA_FLOOR_M)
         _enter_single(state, node, reading.t, i, position[i], spread, physics.FIX_NOISE)
+        if node.turned and i < 2:
+            spread = float(np.hypot(spread, turned_m(offset)))
         singles.append(Single(node.position, i, position[i] - offset[i], spread, physics.FIX_NOISE))
     return singles
 

@@ -10,6 +10,7 @@ from estimator.fusion import physics
 from estimator.fusion.images import doubt_m2
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
+from estimator.fusion.swings import loose_headings, swung_m2
 from estimator.graph.dense import Array
 from estimator.measurements.node import MOVING_ROLES, Node
 
@@ -116,7 +117,11 @@ def attach_unit(state: FusionState, node: NodeState, unit_heading_rad: float | N
         unit_heading_rad: what the unit's first displacement gives as heading, if it does.
     """
     state.graph.delete_nodes([node.velocity])
+    boot = state.navigations.get(node.node)
     turn = initial_turn(node.heading_rad, unit_heading_rad)
+    if boot is not None:
+        # Its frame is known: it is that in which it was told to begin.
+        turn = _within_pi((boot.began_rad if node.heading_rad is None else node.heading_rad) - boot.began_rad)
     sigma = (turn_sigma(node), state.bias_sigma_radps(node), physics.SCALE_SIGMA)
     state.graph.add_node(node.unit, (turn, 0.0, 0.0), sigma)
     uav = float(node.role == "uav")
@@ -205,7 +210,11 @@ def retire(state: FusionState, node: NodeState, t: float) -> None:
         place_m = tuple_of(state.graph.value(node.position))
         rows = state.graph.rows(node.position)
         doubt = doubt_m2(node.otherwise, state.graph.value(node.position)[:2])
-        covariance_m2 = upper_triangle(state.graph.covariance()[rows, rows] + doubt)
+        covariance = state.graph.covariance()
+        own = covariance[rows, rows] + doubt
+        loose, plane = loose_headings(state, covariance), slice(rows.start, rows.start + 2)
+        own[:2, :2] += swung_m2(covariance[None, plane, loose], covariance[loose, loose])[0]
+        covariance_m2 = upper_triangle(own)
         owned = [v for v in (node.position, node.velocity, node.unit) if v in state.graph]
         state.graph.delete_nodes(owned)
     state.nodes[node.node] = replace(

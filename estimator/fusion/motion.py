@@ -15,8 +15,9 @@ from estimator.fusion.physics import NOISES
 from estimator.fusion.rows import Single
 from estimator.fusion.silence import LONGEST_S, SILENT_S, wandered_m2
 from estimator.fusion.standing import stand_on
-from estimator.fusion.state import FusionState
+from estimator.fusion.state import Count, FusionState
 from estimator.fusion.way import Mark
+from estimator.inertial.navigation import Led
 from estimator.measurements.displacement import Displacement, move
 from estimator.measurements.node import MOVING_ROLES
 
@@ -94,13 +95,13 @@ def move_units(state: FusionState, readings: Sequence[Displacement], turns: list
         if node.role not in MOVING_ROLES or node.mode == "retired":
             text = f"{node.node} is a {node.mode} {node.role}: its displacement is set aside"
             state.say("conflict", reading.t, node.node, text, once=f"displacement of {node.node}")
-            state.count("not_fused")
+            _count(state, reading, "not_fused")
             continue
         if node.mode == "undecided":
             if waits_for_ranges(state, node, reading.t):
                 text = f"nobody said where {node.node} entered: its displacements wait for ranges that tell"
                 state.say("not_fused", reading.t, node.node, text, once=f"{node.node} waits for ranges")
-                state.count("not_fused")
+                _count(state, reading, "not_fused")
                 continue
             begin_at_base(state, node, _start_of(reading, None))
         if state.nodes[node.node].mode == "free":
@@ -109,12 +110,18 @@ def move_units(state: FusionState, readings: Sequence[Displacement], turns: list
         if step is None:
             step = steps[node.node] = Step(state.nodes[node.node])
         if _extend(state, step, reading, turns):
-            state.count("fused")
+            _count(state, reading, "fused")
     moving = [s for s in steps.values() if s.duration_s > 0.0 or any(s.noise)]
     if moving:
         _advance_units(state, moving)
     for step in steps.values():
         state.nodes[step.node.node] = step.node
+
+
+def _count(state: FusionState, reading: Displacement, what: Count) -> None:
+    """Count a displacement, unless samples have made it, which are counted."""
+    if not isinstance(reading, Led):
+        state.count(what)
 
 
 def returns(state: FusionState, readings: Sequence[Displacement]) -> dict[str, float]:
@@ -151,8 +158,8 @@ def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[S
     increment = increment_of(node, reading)
     if increment is None:
         text = f"{node.node} reported this epoch's displacement before"
-        state.say("conflict", reading.t, node.node, text)
-        state.count("not_fused")
+        state.say("conflict", reading.t, node.node, text, once=f"epochs of {node.node}")
+        _count(state, reading, "not_fused")
         return False
     if increment.too_fast:
         length = math.hypot(*increment.delta_m)

@@ -5,15 +5,15 @@ import math
 import msgspec
 
 from estimator.fusion.physics import TICK_S
-from estimator.measurements import AnyReading
+from estimator.inertial.samples import AnyFolded
 from estimator.measurements.node import Node
 
 _encode = msgspec.msgpack.Encoder().encode
 
 
-def place_of(reading: AnyReading) -> tuple[float, int, bytes]:
-    """A reading's place in the order: epoch, introductions first, then its own bytes."""
-    return reading.t, 0 if isinstance(reading, Node) else 1, _encode(reading)
+def place_of(reading: AnyFolded) -> tuple[float, int, bytes]:
+    """A reading's place in the order: until when it tells, introductions first, then its own bytes."""
+    return reading.until_t, 0 if isinstance(reading, Node) else 1, _encode(reading)
 
 
 def tick_of(t: float) -> int:

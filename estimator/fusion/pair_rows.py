@@ -123,6 +123,13 @@ def fill(
             # It tells nothing of what its technology is like where no floor is between.
             sigma = math.hypot(sigma, physics.FLOOR_SIGMA[1 if technology[KIND] == RSSI else 0])
             source = link = -1.0
+        unsure_m = math.hypot(
+            way.turned_m(at_a) if a[way.TURNED] != 0.0 else 0.0,
+            way.turned_m(at_b) if b[way.TURNED] != 0.0 else 0.0,
+        )
+        if unsure_m > 0.0 and technology[KIND] != RSSI:
+            sigma = math.hypot(sigma, unsure_m)
+            source = link = -1.0
     row[rows.KIND], row[rows.VALUE], row[rows.CONSTANT] = kind_of(technology), pair[VALUE], pair[CONSTANT]
     row[rows.A], row[rows.B], row[rows.EXTRA] = a[way.START], b[way.START], extra
     row[rows.SIGMA], row[rows.NOMINAL] = sigma, pair[SIGMA]

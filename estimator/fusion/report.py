@@ -7,10 +7,13 @@ from estimator.fusion.images import doubt_between_m2, doubt_m2
 from estimator.fusion.introduce import tuple_of, upper_triangle
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
+from estimator.fusion.swings import loose_headings, swung_m2
 from estimator.graph.dense import Array
 
 AXES = np.arange(3)
 UPPER = np.triu_indices(3)
+PLANE = [0, 1, 3]
+"""Which of them are of east and north."""
 MOVING_MPS = 0.3
 """Below it a velocity tells no heading."""
 
@@ -25,8 +28,12 @@ def estimates(state: FusionState, covariance: Array) -> list[NodeEstimate]:
     held = [node for node in state.nodes.values() if node.place_m is None and node.decided]
     rows = np.array([state.graph.starts[node.position] for node in held], dtype=np.intp)[:, None] + AXES
     # All blocks are taken out at once: a call for each costs more than what it takes out.
-    blocks = covariance[rows[:, UPPER[0]], rows[:, UPPER[1]]].tolist()
-    places = zip(state.graph.reference[rows].tolist(), blocks, strict=True)
+    blocks = covariance[rows[:, UPPER[0]], rows[:, UPPER[1]]]
+    loose = loose_headings(state, covariance)
+    if loose:
+        across, variance = covariance[rows[:, :2]][:, :, loose], covariance[loose, loose]
+        blocks[:, PLANE] += swung_m2(across, variance)[:, [0, 0, 1], [0, 1, 1]]
+    places = zip(state.graph.reference[rows].tolist(), blocks.tolist(), strict=True)
     found = {node.node: place for node, place in zip(held, places, strict=True)}
     return [_estimate(state, node, covariance, found.get(node.node)) for node in state.nodes.values()]
 
@@ -100,7 +107,10 @@ def relative(state: FusionState, covariance: Array, a: str, b: str) -> Relative 
         elif node.covariance_m2 is not None:
             ee, en, eu, nn, nu, uu = node.covariance_m2
             total += np.array([[ee, en, eu], [en, nn, nu], [eu, nu, uu]])
-    total += selector @ covariance @ selector.T
+    across = selector @ covariance
+    total += across @ selector.T
+    loose = loose_headings(state, covariance)
+    total[:2, :2] += swung_m2(across[None, :2, loose], covariance[loose, loose])[0]
     held = [node.otherwise if node.place_m is None else () for node in ends]
     total += doubt_between_m2(held[0], places[0][:2], held[1], places[1][:2])
     return Relative(delta_m=tuple_of(places[1] - places[0]), covariance_m2=upper_triangle(total))

@@ -15,6 +15,7 @@ from estimator.fusion.noise import LearnedNoise
 from estimator.fusion.prior import Prior
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
+from estimator.inertial.navigation import Navigation
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Role
 
@@ -47,6 +48,7 @@ class FusionState:
         refreshed_t: end of the tick at which the window was last solved.
         window_t: epoch of the window's first keyframe.
         prior: what is known from before the window.
+        navigations: of the boots whose units report raw samples, by node.
         uncalibrated: probability that a ranging technology is not calibrated, where it reaches odometry.
         ledger: what has been fused, as tables.
         owners: the node of each number in the ledger.
@@ -75,6 +77,7 @@ class FusionState:
         self.refreshed_t = 0.0
         self.window_t: float | None = None
         self.prior: Prior | None = None
+        self.navigations: dict[str, Navigation] = {}
         self.uncalibrated: dict[str, float] = {}
         self.ledger = Ledger()
         self.owners: tuple[str, ...] = ()
@@ -88,7 +91,7 @@ class FusionState:
         twin.nodes, twin.links, twin.sightings = dict(self.nodes), self.links.copy(), dict(self.sightings)
         twin.noise, twin.uncalibrated = dict(self.noise), dict(self.uncalibrated)
         twin.counts, twin.said, twin.tried = dict(self.counts), dict(self.said), dict(self.tried)
-        twin.notices = []
+        twin.navigations, twin.notices = dict(self.navigations), []
         return twin
 
     def count(self, what: Count, number: int = 1) -> None:

@@ -7,18 +7,18 @@ from operator import attrgetter, itemgetter
 import numpy as np
 from msgspec.structs import replace
 
-from estimator.fusion import beginnings, free, held, introduce, motion, physics
+from estimator.fusion import beginnings, boots, free, held, introduce, motion, physics
 from estimator.fusion.pairs import AnyPair, Pairs
 from estimator.fusion.rows import Single, table_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.update import update
 from estimator.fusion.way import offset_of
+from estimator.inertial.samples import AnyFolded, Samples
 from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude, Pressure
 from estimator.measurements.bearing import Bearing
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop
-from estimator.measurements.imu import Imu
 from estimator.measurements.node import MOVING_ROLES, Node
 from estimator.measurements.position import Position
 from estimator.measurements.range import Range
@@ -30,7 +30,7 @@ PAIRS = (Range, Rssi, Bearing)
 HELD = (Range, Rssi, Bearing, Position, Altitude, Pressure, Drop)
 
 
-def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyReading]) -> None:
+def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded]) -> None:
     """Fold the readings of one tick into the state; what is noticed stands in its `notices`.
 
     Args:
@@ -52,11 +52,9 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyReading]
             introduce.introduce(state, reading)
         elif isinstance(reading, Retire):
             retired.append(reading)
-        elif isinstance(reading, Imu):
-            text = f"{reading.node} sends raw IMU samples, which are logged and not fused yet"
-            state.say("not_fused", reading.t, reading.node, text, once=f"imu of {reading.node}")
-            state.node_of(reading.node, "responder", reading.t)
-            state.count("not_fused")
+        elif isinstance(reading, Samples):
+            displacements += boots.displacements_of(state, reading)
+    displacements.sort(key=attrgetter("t"))
     holds.sort(key=attrgetter("t"))
     late_t, leaving = until_t - physics.PENDING_S, {r.node for r in retired}
     while back := motion.returns(state, displacements):
@@ -210,7 +208,7 @@ def _parts(state: FusionState, readings: Sequence[AnyReading]) -> list[Sequence[
     return [together, *(parts[k] for k in sorted(parts))]
 
 
-def names_of(reading: AnyReading) -> tuple[str, ...]:
+def names_of(reading: AnyFolded) -> tuple[str, ...]:
     """The nodes that a reading names."""
     if isinstance(reading, PAIRS):
         return reading.a, reading.b

@@ -35,6 +35,7 @@ class End(NamedTuple):
         way_m: length of its way so far.
         decided: readings can be held against its position.
         outside: no floor can be between it and another node.
+        turned: nobody knows what its unit faces.
     """
 
     start: int
@@ -50,9 +51,10 @@ class End(NamedTuple):
     way_m: float
     decided: bool
     outside: bool
+    turned: bool
 
 
-START, MOVES, STATES, POSE_T, E, N, U, FIRST, LAST, BLOCK, WAY_M, DECIDED, OUTSIDE = range(13)
+START, MOVES, STATES, POSE_T, E, N, U, FIRST, LAST, BLOCK, WAY_M, DECIDED, OUTSIDE, TURNED = range(14)
 
 
 def end_of(state: FusionState, node: NodeState, marks: list[Mark]) -> End:
@@ -89,6 +91,7 @@ def end_of(state: FusionState, node: NodeState, marks: list[Mark]) -> End:
         node.way_m,
         start >= 0 or mode == "fixed",
         node.role in physics.OUTSIDE_ROLES,
+        node.turned,
     )
 
 
@@ -100,6 +103,15 @@ def offset_of(state: FusionState, node: NodeState, t: float) -> Vector3:
         return end.e, end.n, end.u
     east, north, up = offset(np.array(end, dtype=np.float64), table_of_marks(marks), state.graph.reference, t)
     return east, north, up
+
+
+@njit(cache=True, error_model="numpy")
+def turned_m(offset_m: Vector3) -> float:
+    """How far off a place is by which a node stood from its block, if its unit may face anything (m).
+
+    Two ends of a length that may be turned by any angle are √2 lengths apart on average.
+    """
+    return float(np.sqrt(2.0 * (offset_m[0] ** 2 + offset_m[1] ** 2)))
 
 
 def table_of_marks(marks: list[Mark]) -> Array:

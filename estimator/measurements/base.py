@@ -42,6 +42,11 @@ class Reading(
 
     t: EpochSeconds
 
+    @property
+    def until_t(self) -> float:
+        """Epoch up to which it tells something, Unix seconds."""
+        return self.t
+
 
 class SelfReading(ValueError):  # noqa: N818 - names the condition
     """A reading in which a node measures or drops itself."""

@@ -1,4 +1,4 @@
-"""`imu`: raw samples of a foot-mounted inertial unit. Accepted and logged; no tracker fuses them yet."""
+"""`imu`: raw samples of a foot-mounted inertial unit."""
 
 from typing import Annotated
 
@@ -11,10 +11,14 @@ Accel = Annotated[float, Meta(ge=-10_000.0, le=10_000.0)]
 Gyro = Annotated[float, Meta(ge=-1_000.0, le=1_000.0)]
 Mag = Annotated[float, Meta(ge=-100_000.0, le=100_000.0)]
 MAX_SAMPLES = 10_000
+RATE_MIN_HZ = 25.0
+"""A stride lasts a second: with fewer samples its swing cannot be summed up."""
 
 
 class Imu(Reading, tag="imu", frozen=True):
     """Raw IMU samples in right-handed sensor axes fixed to the boot, the first one at `t`.
+
+    Indoors the Earth's field is bent by steel: `mag_ut` is logged and not fused.
 
     Attributes:
         node: the unit.
@@ -29,6 +33,11 @@ class Imu(Reading, tag="imu", frozen=True):
     accel_mps2: Annotated[list[tuple[Accel, Accel, Accel]], Meta(min_length=1, max_length=MAX_SAMPLES)]
     gyro_radps: Annotated[list[tuple[Gyro, Gyro, Gyro]], Meta(min_length=1, max_length=MAX_SAMPLES)]
     mag_ut: Annotated[list[tuple[Mag, Mag, Mag]], Meta(min_length=1, max_length=MAX_SAMPLES)] | None = None
+
+    @property
+    def until_t(self) -> float:
+        """When its last sample ends, Unix seconds; `t`, where there are too few of them to be summed up."""
+        return self.t + len(self.accel_mps2) / self.rate_hz if self.rate_hz >= RATE_MIN_HZ else self.t
 
     def __post_init__(self) -> None:
         """Refuse sample arrays of different lengths.

@@ -6,8 +6,11 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.graph.dense import Array
+from estimator.inertial.navigation import Led, navigate
+from estimator.inertial.samples import pieces
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop
+from estimator.measurements.imu import Imu
 from estimator.measurements.node import MOVING_ROLES, Node
 from estimator.measurements.retire import Retire
 from estimator.paper_a import noise
@@ -107,6 +110,23 @@ def displace(state: PaperAState, reading: Displacement) -> None:
     speed = float(np.hypot(east, north)) / duration if duration > 0.0 else None
     state.nodes[node.node] = replace(node, reckons=True, way_m=node.way_m + way, speed_mps=speed)
     state.fused(reading.t, node.node)
+
+
+def navigate_boot(state: PaperAState, reading: Imu) -> None:
+    """What raw samples of a boot make is what a PDR unit would have measured: the paper's are such boots."""
+    node, led, text = _bearer(state, reading.node, reading.t), list[Led](), None
+    for piece in pieces(reading):
+        done = navigate(state.navigations.get(node.node), piece, 0.0)
+        state.navigations[node.node] = done.navigation
+        led, text = led + done.displacements, done.text or text
+    if led:
+        east, north, up = np.sum([each.delta_m for each in led], axis=0).tolist()
+        whole = Displacement(t=led[-1].t, node=node.node, delta_m=(east, north, up), from_t=led[0].from_t)
+        displace(state, whole)
+    elif text is not None:
+        state.refuse("not_fused", reading.t, node.node, f"{node.node}: {text}")
+    else:
+        state.fused(reading.t)
 
 
 def _bearer(state: PaperAState, name: str, t: float) -> GraphNode:

@@ -6,6 +6,7 @@ from msgspec.structs import replace
 from estimator.estimate import Covariance6, NodeEstimate, Notice, NoticeCode, Relative, Vector3
 from estimator.graph.dense import Array
 from estimator.graph.variable import Variable
+from estimator.inertial.navigation import Navigation
 from estimator.measurements.node import Role
 from estimator.paper_a.network import Network
 from estimator.paper_a.node import GraphNode
@@ -17,6 +18,7 @@ class PaperAState:
     Attributes:
         network: L and b.
         nodes: every node ever introduced, in order of introduction.
+        navigations: of the boots whose units report raw samples, by node.
         counts: readings received, fused, not fused, dropped as outliers, too late.
         notices: not taken yet.
         said: keys of notices that are given once.
@@ -25,6 +27,7 @@ class PaperAState:
     def __init__(self) -> None:
         self.network = Network()
         self.nodes: dict[str, GraphNode] = {}
+        self.navigations: dict[str, Navigation] = {}
         self.counts = dict.fromkeys(("received", "fused", "not_fused", "outlier", "too_late"), 0)
         self.notices: list[Notice] = []
         self.said: dict[str, None] = {}

@@ -22,6 +22,7 @@ from estimator.smoothing.otherwise import Mode, otherwise
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
+from estimator.smoothing.swung import last_headings, responses, swung
 from estimator.smoothing.walks import STATES
 
 HELD_MAX = 30
@@ -70,12 +71,13 @@ def explain(
     else:
         return None
     solved.chain.solve()
-    current, fixed = _currents(layout, solved, start)
-    covariance = np.concatenate([current, fixed])[start : start + 3]
-    covariance = 0.5 * (covariance + covariance.T)
+    headings = last_headings(layout)
+    told = responses(layout, solved, [start, start + 1, start + 2, *headings])
+    covariance = 0.5 * (told[start : start + 3, :3] + told[start : start + 3, :3].T)
     doubt = doubt_m2(otherwise(layout, solved.x, modes).get(name, ()), solved.x[start : start + 2])
-    across = np.concatenate([current, fixed])[:, :2]
+    across = told[:, :2]
     total = float(np.trace(covariance[:2, :2]))
+    doubt[:2, :2] += swung(told[:, 3:], headings, start)
     rows = problem.rows
     flat = _flat(layout, rows)
     carried = np.einsum(
@@ -98,15 +100,6 @@ def explain(
         rejected=rejected,
         rest=max(1.0 - sum(m.share for m in held), 0.0),
     )
-
-
-def _currents(layout: Layout, solved: Solved, start: int) -> tuple[Array, Array]:
-    size = layout.length * layout.width
-    unit = np.zeros((size + layout.border, 3))
-    unit[range(start, start + 3), range(3)] = 1.0
-    keyframes = unit[:size].reshape(layout.length, layout.width, 3)
-    moved, fixed = solved.chain.response(keyframes, unit[size:])
-    return moved.reshape(size, 3), fixed
 
 
 def _flat(layout: Layout, rows: Rows) -> Array:

@@ -32,6 +32,8 @@ LEAST_SHARE, FARTHEST = 0.1, 4.0
 """Shares of a step between which the cost is looked for at its lowest."""
 CLOSE = 0.3
 """A step is good enough where the lowest cost is within this share of it."""
+NOWHERE = 1e9
+"""No place, angle or speed is a larger number: coordinates end at a hundred kilometres."""
 LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e3
 
 
@@ -257,6 +259,9 @@ class Problem:
         for iteration in range(iterations):
             slack = slacks_m[iteration] if iteration < len(slacks_m) else 0.0
             step, promised = self._step(x, linear, motions, slack, damping, near and slack == 0.0)
+            if not np.abs(x + step).max(initial=0.0) < NOWHERE:
+                # Readings contradict each other beyond all measure: no step helps.
+                break
             there = self.at(x + step)
             if slack == 0.0 and promised > resting:
                 # The parabola through the cost here, its slope and the cost there: where it is lowest.

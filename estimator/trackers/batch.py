@@ -17,6 +17,7 @@ from estimator.fusion.order import place_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import flush, fold_tick, keep_poses, names_of
 from estimator.graph.robust import mixture_cost
+from estimator.inertial.samples import AnyFolded, in_pieces
 from estimator.measurements import AnyReading
 from estimator.smoothing.advice import advise
 from estimator.smoothing.branch import branch, reunite
@@ -34,6 +35,7 @@ from estimator.smoothing.settle import keep_keyframes, settle
 from estimator.smoothing.slips import withdraw
 from estimator.smoothing.solve import RESTING, Problem
 from estimator.smoothing.solved import Solved
+from estimator.smoothing.swung import swing
 from estimator.smoothing.tracks import tracks
 from estimator.smoothing.window import keep_up
 from estimator.trackers.base import TrackerSettings
@@ -75,6 +77,7 @@ class BatchSmoother:
         problem, solved, modes, _ = likeliest(problem, solved, WHOLE)
         solved.chain.solve()
         covariances = solved.chain.covariances()
+        swing(problem.layout, solved, covariances)
         admit(problem.layout, solved.x, modes, covariances)
         return tracks(problem.layout, solved.x, *covariances, lifetimes(ordered))
 
@@ -100,11 +103,11 @@ class BatchSmoother:
         return advise(online_pass(in_order(readings), self.settings), node)
 
 
-def in_order(readings: Sequence[AnyReading]) -> list[AnyReading]:
+def in_order(readings: Sequence[AnyReading]) -> list[AnyFolded]:
     """The readings in canonical order, without those whose epoch must be wrong."""
-    ordered = sorted(readings, key=place_of)
-    middle = ordered[len(ordered) // 2].t if ordered else 0.0
-    return [r for r in ordered if abs(r.t - middle) < LONGEST_S]
+    ordered = sorted(in_pieces(readings), key=place_of)
+    middle = ordered[len(ordered) // 2].until_t if ordered else 0.0
+    return [r for r in ordered if abs(r.until_t - middle) < LONGEST_S]
 
 
 def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
@@ -208,7 +211,7 @@ def spacing_s(state: FusionState, since_t: float, until_t: float) -> float:
     return spacing
 
 
-def online_pass(readings: Sequence[AnyReading], settings: TrackerSettings) -> FusionState:
+def online_pass(readings: Sequence[AnyFolded], settings: TrackerSettings) -> FusionState:
     """Fold the readings once, in ticks of `TICK_S`.
 
     Args:
@@ -219,9 +222,9 @@ def online_pass(readings: Sequence[AnyReading], settings: TrackerSettings) -> Fu
     state.ledger = Ledger(complete=True)
     start = 0
     while start < len(readings):
-        until_t = (math.floor(readings[start].t / TICK_S) + 1) * TICK_S
+        until_t = (math.floor(readings[start].until_t / TICK_S) + 1) * TICK_S
         end = start
-        while end < len(readings) and readings[end].t < until_t:
+        while end < len(readings) and readings[end].until_t < until_t:
             end += 1
         fold_tick(state, until_t, readings[start:end])
         keep_up(state, until_t, RARER)
@@ -231,13 +234,12 @@ def online_pass(readings: Sequence[AnyReading], settings: TrackerSettings) -> Fu
     return state
 
 
-def lifetimes(readings: Sequence[AnyReading]) -> dict[str, tuple[float, float]]:
+def lifetimes(readings: Sequence[AnyFolded]) -> dict[str, tuple[float, float]]:
     """First and last epoch of each node's readings, which come in order of epoch."""
     first: dict[str, float] = {}
     last: dict[str, float] = {}
     for reading in readings:
         for name in names_of(reading):
-            last[name] = reading.t
-            if name not in first:
-                first[name] = reading.t
+            last[name] = reading.until_t
+            first[name] = min(first.get(name, reading.t), reading.t)
     return {name: (t, last[name]) for name, t in first.items()}

@@ -15,6 +15,7 @@ from estimator.estimate import Notice
 from estimator.fusion.order import end_of_tick, place_of, tick_of
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import fold_tick, names_of
+from estimator.inertial.samples import AnyFolded, Samples, in_pieces
 from estimator.measurements import AnyReading
 from estimator.smoothing.window import keep_up
 
@@ -40,7 +41,7 @@ class LagRecord(msgspec.Struct, frozen=True, array_like=True):
     newest_t: float | None
     too_late: int
     received: int
-    readings: list[tuple[int, list[AnyReading]]]
+    readings: list[tuple[int, list[AnyFolded]]]
     checkpoints: list[int]
     notices: dict[int, list[Notice]]
     given: dict[int, list[Notice]]
@@ -63,7 +64,7 @@ class Lag:
         self.too_late = 0
         self.received = 0
         self._ticks: list[int] = []
-        self._readings: dict[int, list[AnyReading]] = {}
+        self._readings: dict[int, list[AnyFolded]] = {}
         self._checkpoints: list[tuple[int, FusionState]] = [(-1, state)]
         self._folded = -1
         self._notices: dict[int, list[Notice]] = {}
@@ -105,15 +106,15 @@ class Lag:
 
     def add(self, readings: Sequence[AnyReading]) -> None:
         """Take readings in; those beyond the lag are counted and noticed."""
-        late: dict[str, list[AnyReading]] = {}
-        for reading in sorted(readings, key=lambda r: r.t):
-            self.received += 1
-            if self.newest_t is not None and reading.t < self.newest_t - self.lag_s:
-                self.too_late += 1
+        late: dict[str, list[AnyFolded]] = {}
+        self.received += len(readings)
+        for reading in sorted(in_pieces(readings), key=lambda r: r.until_t):
+            if self.newest_t is not None and reading.until_t < self.newest_t - self.lag_s:
+                self.too_late += int(not isinstance(reading, Samples) or reading.last)
                 late.setdefault(names_of(reading)[0], []).append(reading)
                 continue
-            self.newest_t = reading.t if self.newest_t is None else max(self.newest_t, reading.t)
-            tick = tick_of(reading.t)
+            self.newest_t = reading.until_t if self.newest_t is None else max(self.newest_t, reading.until_t)
+            tick = tick_of(reading.until_t)
             if tick not in self._readings:
                 self._readings[tick] = []
                 insort(self._ticks, tick)

@@ -13,6 +13,7 @@ from estimator.estimate import NodeEstimate, Notice, Relative
 from estimator.graph.dense import Array
 from estimator.graph.record import ArrayRecord, pack, unpack
 from estimator.graph.variable import Variable
+from estimator.inertial.record import NavigationRecord, navigation_of, record_of
 from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude, Pressure
 from estimator.measurements.bearing import Bearing
@@ -32,8 +33,17 @@ from estimator.paper_a.state import PaperAState
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.snapshot import read_snapshot
 
-VERSION = 1
-ORDER: dict[type, int] = {Node: 0, Displacement: 1, Position: 2, Drop: 3, Range: 4, Rssi: 4, Retire: 6}
+VERSION = 2
+ORDER: dict[type, int] = {
+    Node: 0,
+    Displacement: 1,
+    Imu: 1,
+    Position: 2,
+    Drop: 3,
+    Range: 4,
+    Rssi: 4,
+    Retire: 6,
+}
 """Of one epoch, first who is there and where it went, then what was measured there."""
 
 _encode = msgspec.msgpack.Encoder().encode
@@ -48,6 +58,7 @@ class _Snapshot(msgspec.Struct, frozen=True, array_like=True):
     counts: dict[str, int]
     notices: list[Notice]
     said: list[str]
+    navigations: dict[str, NavigationRecord]
 
 
 class PaperATracker:
@@ -65,7 +76,7 @@ class PaperATracker:
     def fold(self, readings: Sequence[AnyReading]) -> None:
         """Fold readings, those of one call in order of their epochs."""
         self._covariance = None
-        for reading in sorted(readings, key=lambda r: (r.t, ORDER.get(type(r), 5), _encode(r))):
+        for reading in sorted(readings, key=lambda r: (r.until_t, ORDER.get(type(r), 5), _encode(r))):
             self._state.counts["received"] += 1
             self._take(reading)
 
@@ -86,7 +97,9 @@ class PaperATracker:
                 lifecycle.retire(state, reading)
             case Status() | Alarm():
                 state.counts["not_fused"] += 1
-            case Imu() | Bearing() | Altitude() | Pressure():
+            case Imu():
+                lifecycle.navigate_boot(state, reading)
+            case Bearing() | Altitude() | Pressure():
                 name = reading.a if isinstance(reading, Bearing) else reading.node
                 state.node_of(name, "responder", reading.t)
                 text = f"paper A's system has no place for {type(reading).__name__.lower()} readings"
@@ -144,6 +157,7 @@ class PaperATracker:
                 state.counts,
                 state.notices,
                 list(state.said),
+                {name: record_of(known) for name, known in state.navigations.items()},
             )
         )
 
@@ -162,4 +176,5 @@ class PaperATracker:
         restored.nodes = {node.node: node for node in snapshot.nodes}
         restored.counts, restored.notices = snapshot.counts, snapshot.notices
         restored.said = dict.fromkeys(snapshot.said)
+        restored.navigations = {n: navigation_of(known) for n, known in snapshot.navigations.items()}
         return tracker

@@ -85,7 +85,13 @@ readings = st.one_of(
     st.builds(Pressure, t=epochs, node=names, pressure_pa=st.floats(1e4, 2e5), sigma_m=sigmas),
     st.builds(Status, t=epochs, node=names),
     st.builds(Alarm, t=epochs, node=names, alarm=st.just("mayday"), state=st.just("raised")),
-    st.builds(Imu, t=epochs, node=names, rate_hz=st.just(200.0),
-              accel_mps2=st.just([(0.0, 0.0, 9.8)]), gyro_radps=st.just([(0.0, 0.0, 0.0)])),
+    st.builds(
+        lambda t, node, rate_hz, accel, gyro, count: Imu(
+            t=t, node=node, rate_hz=rate_hz, accel_mps2=[accel] * count, gyro_radps=[gyro] * count
+        ),
+        epochs, names, st.sampled_from([0.1, 50.0, 200.0, 1e4]),
+        st.one_of(st.just((0.0, 0.0, 9.8)), st.just((0.0, 0.0, 0.0)), st.tuples(*[st.floats(-1e4, 1e4)] * 3)),
+        st.one_of(st.just((0.0, 0.0, 0.0)), st.tuples(*[st.floats(-1e3, 1e3)] * 3)), st.integers(1, 400),
+    ),
     st.builds(Retire, t=epochs, node=names),
 )  # fmt: skip

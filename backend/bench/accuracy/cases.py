@@ -1,7 +1,6 @@
 """What is judged: simulated scenarios and public data sets, readings and truth kept apart."""
 
 from collections.abc import Iterator
-from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,12 +10,9 @@ import numpy as np
 from backend.recordings import converter_names
 from backend.recordings.datasets import convert
 from backend.recordings.datasets.truth import truth_of
-from estimator.measurements import AnyReading, Imu, Node
+from estimator.measurements import AnyReading, Node
 from estimator.simulate import Report, TrueTrack, scenario, scenario_names
 from estimator.simulate.base import in_posting_order
-
-FIRST_LINES = 5
-"""A data set that sends raw IMU does so from its first seconds on."""
 
 
 class Case(NamedTuple):
@@ -52,15 +48,11 @@ def names(data: Path) -> tuple[list[str], list[str]]:
         folder = data / name.partition(":")[0]
         if not folder.is_dir():
             left_out.append(f"{name}: there is no folder {folder}")
-        elif any(isinstance(r.reading, Imu) for r in _converted(name, folder, FIRST_LINES)):
-            left_out.append(f"{name}: sends raw IMU, which these entrants do not take")
         else:
             found.append(name)
     converted = {name.partition(":")[0] for name in converter_names()}
     folders = sorted(path.name for path in data.iterdir() if path.is_dir()) if data.is_dir() else []
-    left_out += [
-        f"{name}: has no converter; raw IMU is not taken" for name in folders if name not in converted
-    ]
+    left_out += [f"{name}: has no converter" for name in folders if name not in converted]
     return found, left_out
 
 
@@ -85,7 +77,7 @@ def case_of(name: str, seed: int, data: Path) -> Case:
         built = scenario(name, seed)
         return Case(name, built.reports, _judged(built.reports, built.truth))
     folder = data / name.partition(":")[0]
-    reports = in_posting_order(list(_converted(name, folder, None)))
+    reports = in_posting_order(list(_converted(name, folder)))
     tracks = {
         node: TrueTrack(t_s, position_m, np.zeros(len(t_s), dtype=np.int64), np.zeros(len(t_s)))
         for node, (t_s, position_m) in truth_of(name, folder).items()
@@ -93,11 +85,11 @@ def case_of(name: str, seed: int, data: Path) -> Case:
     return Case(name, reports, _judged(reports, tracks))
 
 
-def _converted(name: str, folder: Path, lines: int | None) -> Iterator[Report]:
-    """The data set's readings, posted as they are measured; of the first `lines` seconds, if given."""
-    for line in islice(convert(name, folder), lines):
+def _converted(name: str, folder: Path) -> Iterator[Report]:
+    """The data set's readings, posted as they are measured."""
+    for line in convert(name, folder):
         batch = _decode_line(line)
-        yield from (Report(reading, batch.gateway, reading.t) for reading in batch.readings)
+        yield from (Report(reading, batch.gateway, reading.until_t) for reading in batch.readings)
 
 
 def _judged(reports: tuple[Report, ...], truth: dict[str, TrueTrack]) -> dict[str, TrueTrack]:

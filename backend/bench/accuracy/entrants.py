@@ -2,12 +2,16 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Literal, NamedTuple
 
 from backend.bench.accuracy import gtsam_peer, least_squares
 from estimator import trackers
 from estimator.estimate import TrackPoint
+from estimator.inertial.navigation import Navigation, navigate
+from estimator.inertial.samples import pieces
+from estimator.measurements import Imu
 from estimator.simulate import Report
 from estimator.trackers.base import Tracker, TrackerSettings
 
@@ -41,8 +45,8 @@ def entrants() -> list[Entrant]:
         if name in trackers.SMOOTHERS:
             found.append(Entrant(name, "smoothed", True, _anything, partial(_smoothed, name)))
     found += [Entrant(name, "smoothed", True, _anything, partial(_smoothed, name)) for name in _only_smooth()]
-    found.append(Entrant("gtsam", "online", False, _anything, gtsam_peer.online))
-    found.append(Entrant("gtsam", "smoothed", False, _anything, gtsam_peer.smoothed))
+    found.append(Entrant("gtsam", "online", False, _anything, partial(_displaced, gtsam_peer.online)))
+    found.append(Entrant("gtsam", "smoothed", False, _anything, partial(_displaced, gtsam_peer.smoothed)))
     found.append(Entrant("least-squares", "online", False, least_squares.takes, least_squares.track))
     return found
 
@@ -83,6 +87,21 @@ def _online(name: str, reports: Sequence[Report]) -> Tracks:
             if not track or track[-1].t != e.t:
                 track.append(TrackPoint(t=e.t, position_m=e.position_m, covariance_m2=e.covariance_m2))
     return tracks
+
+
+def _displaced(track: Callable[[Sequence[Report]], Tracks], reports: Sequence[Report]) -> Tracks:
+    """Tracks of an entrant that takes no raw samples: it gets the displacements that ours make of them."""
+    navigations: dict[str, Navigation] = {}
+    told: list[Report] = []
+    for report in reports:
+        if not isinstance(report.reading, Imu):
+            told.append(report)
+            continue
+        for piece in pieces(report.reading):
+            done = navigate(navigations.get(piece.node), piece, 0.0)
+            navigations[piece.node] = done.navigation
+            told += [replace(report, reading=displacement) for displacement in done.displacements]
+    return track(told)
 
 
 def _smoothed(name: str, reports: Sequence[Report]) -> Tracks:

@@ -1,14 +1,15 @@
 """What converters share: readings in order of time become lines of a recorded log."""
 
 import csv
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TextIO
 
 import msgspec
 
-from estimator.measurements import AnyReading
+from estimator.measurements import AnyReading, Imu
 
+Vector3 = tuple[float, float, float]
 BATCH_S = 1.0
 KNOWN_SIGMA_M = 0.05
 """How well a position that the data set gives was surveyed, where it does not say."""
@@ -43,8 +44,40 @@ def lines(gateway: str, readings: Iterable[AnyReading]) -> Iterator[bytes]:
         yield _line(gateway, number, gathered)
 
 
+def samples(
+    node: str,
+    rate_hz: float,
+    epochs: Sequence[float],
+    forces: Sequence[Vector3],
+    rates: Sequence[Vector3],
+    fields: Sequence[Vector3] | None = None,
+) -> Iterator[Imu]:
+    """Samples of an inertial unit as readings of a second each.
+
+    Args:
+        node: the unit.
+        rate_hz: samples a second.
+        epochs: of the samples, n (s).
+        forces: specific force, n × 3 (m/s²).
+        rates: angular rate, n × 3 (rad/s).
+        fields: magnetic flux density, n × 3 (µT).
+    """
+    together = round(BATCH_S * rate_hz)
+    for first in range(0, len(epochs), together):
+        some = slice(first, first + together)
+        yield Imu(
+            t=epochs[first],
+            node=node,
+            rate_hz=rate_hz,
+            accel_mps2=list(forces[some]),
+            gyro_radps=list(rates[some]),
+            mag_ut=None if fields is None else list(fields[some]),
+        )
+
+
 def _line(gateway: str, number: int, readings: list[AnyReading]) -> bytes:
-    return msgspec.json.encode(_Line(gateway, f"{gateway}-{number:06d}", readings[-1].t, readings)) + b"\n"
+    sent = max(reading.until_t for reading in readings)
+    return msgspec.json.encode(_Line(gateway, f"{gateway}-{number:06d}", sent, readings)) + b"\n"
 
 
 def rows(path: Path) -> Iterator[dict[str, str]]:

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from backend.recordings.datasets import footimu_gcp, footimu_vicon
 from backend.recordings.datasets.base import rows, words
 
 FloatArray = NDArray[np.float64]
@@ -67,6 +68,16 @@ def _danis(folder: Path, recording: str) -> dict[str, Truth]:
     }
 
 
+def _vicon(folder: Path, recording: str) -> dict[str, Truth]:
+    table = footimu_vicon.walked(folder, recording or footimu_vicon.RECORDINGS[0])
+    return {"boot": _truth([(row["t_s"], *footimu_vicon.place_of(row)) for row in table])}
+
+
+def _gcp(folder: Path, recording: str) -> dict[str, Truth]:
+    del recording
+    return {"boot": _truth([(t, x, y, 0.0) for t, x, y in footimu_gcp.tiles(folder)])}
+
+
 def _truth(table: list[tuple[float, float, float, float]]) -> Truth:
     values = np.array(table, dtype=np.float64)
     return values[:, 0], values[:, 1:]
@@ -77,4 +88,6 @@ _READERS: dict[str, Callable[[Path, str], dict[str, Truth]]] = {
     "labyrinth_uwb": _labyrinth,
     "uwb_outdoor_hanyang": _hanyang,
     "ble_rssi_danis": _danis,
+    "footimu_vicon": _vicon,
+    "footimu_gcp": _gcp,
 }

@@ -610,6 +610,8 @@ export interface components {
          * Imu
          * @description Raw IMU samples in right-handed sensor axes fixed to the boot, the first one at `t`.
          *
+         *         Indoors the Earth's field is bent by steel: `mag_ut` is logged and not fused.
+         *
          *         Attributes:
          *             node: the unit.
          *             rate_hz: samples a second.

@@ -115,6 +115,21 @@ def test_a_reading_from_the_future_is_set_aside() -> None:
     assert judged([RANGE, late]).rejected == ()
 
 
+def test_samples_that_end_in_the_future_are_set_aside() -> None:
+    """Else one unit with a wrong rate would make everybody else's readings too late."""
+    imu = {
+        "kind": "imu",
+        "t": 100.0,
+        "node": "ff1",
+        "rate_hz": 25.0,
+        "accel_mps2": [[0.0, 0.0, 9.8]] * 5000,
+        "gyro_radps": [[0.0, 0.0, 0.0]] * 5000,
+    }
+    told = judged([RANGE, imu], sent=110.4).rejected
+    assert [(fault.index, fault.code) for fault in told] == [(1, "time_in_future")]
+    assert "the last sample" in told[0].message
+
+
 def test_readings_from_the_far_past_are_accepted() -> None:
     assert judged([{**RANGE, "t": 0}], now=1_763_712_345.0, sent=1_763_712_345.0).rejected == ()
 

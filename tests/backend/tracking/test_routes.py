@@ -3,11 +3,15 @@
 import math
 import time
 from collections.abc import Iterator
+from typing import Any
 
+import msgspec
 import pytest
 
 from backend.tracking.routes import relative_position
 from estimator.estimate import Relative
+from tests.estimator.inertial.gait import Stride
+from tests.estimator.inertial.gait import walked as boot_walked
 from tests.running import Post, Server, eventually, running
 
 START_T = 1_000.0
@@ -66,6 +70,18 @@ def test_the_frame_holds_what_was_posted_before(post: Post, walked: str) -> None
     assert nodes["ff1"]["position_m"] == pytest.approx([20.5, 0.0, 0.0], abs=0.5)
     assert frame["t"] == frame["newest_t"] == START_T + SECONDS + 0.5
     assert frame["seq"] == 2 * SECONDS + 2
+
+
+def test_a_boot_that_sends_raw_samples_is_shown_where_it_goes(post: Post) -> None:
+    incident, gait = post.open_incident("a boot"), boot_walked([Stride()] * 10, start_t=START_T)
+    first = {"kind": "node", "t": START_T, "node": "ff1", "role": "responder", "position_m": [0, 0, 0]}
+    post.telemetry(incident, "b0", [first])
+    for number, reading in enumerate(gait.readings(), 1):
+        post.telemetry(incident, f"b{number}", [msgspec.to_builtins(reading)])
+    frame = post.frame(incident, min_seq=len(gait.readings()) + 1)
+    node: dict[str, Any] = next(iter(frame["nodes"]))  # type: ignore[call-overload]  # JSON
+    assert node["position_m"] == pytest.approx(gait.place_m[-1].tolist(), abs=0.5)
+    assert frame["t"] - 0.5 <= node["t"] <= frame["t"]  # type: ignore[operator]  # JSON
 
 
 def test_an_entry_that_is_never_folded_is_waited_for_in_vain(post: Post, walked: str) -> None:

@@ -8,6 +8,9 @@ from hypothesis import strategies as st
 from estimator import trackers
 from estimator.evaluate import full_covariance
 from estimator.measurements import AnyReading
+from estimator.measurements.altitude import Altitude
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.drop import Drop
 from estimator.measurements.range import Range
 from estimator.trackers.base import TrackerSettings
 from tests.estimator.arbitrary import readings
@@ -59,3 +62,15 @@ def test_a_tracker_restored_from_a_snapshot_goes_on_to_the_last_bit(name: str, c
     assert restored.counts() == whole.counts()
     assert restored.take_notices() == whole.take_notices()
     assert restored.snapshot() == whole.snapshot()
+
+
+def test_a_way_of_kilometres_in_no_time_brings_no_window_down() -> None:
+    tracker = trackers.create("kirchhoff", TrackerSettings())
+    tracker.fold(
+        [
+            Drop(t=0.0, node="base", by="ff2"),
+            Displacement(t=1e-20, node="base", delta_m=(79028.0, 99998.0, 0.0)),
+            Altitude(t=10.0, node="ff2", up_m=0.0),
+        ]
+    )
+    assert np.isfinite([e.position_m for e in tracker.estimates() if e.position_m is not None]).all()

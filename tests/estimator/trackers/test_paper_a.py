@@ -15,6 +15,7 @@ from estimator.measurements.retire import Retire
 from estimator.measurements.status import Status
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.paper_a import PaperATracker
+from tests.estimator.inertial.gait import Stride, walked
 from tests.estimator.paper_a.folding import estimate, folded, place
 
 START: list[AnyReading] = [
@@ -57,7 +58,7 @@ def test_readings_that_the_paper_has_no_place_for_are_counted_as_not_fused() -> 
     tracker = folded(START)
     before = place(tracker, "ff1").tolist()
     foreign: list[AnyReading] = [
-        Imu(t=1.0, node="ff1", rate_hz=200.0, accel_mps2=[(0.0, 0.0, 9.8)], gyro_radps=[(0.0, 0.0, 0.0)]),
+        Imu(t=1.0, node="ff1", rate_hz=10.0, accel_mps2=[(0.0, 0.0, 9.8)], gyro_radps=[(0.0, 0.0, 0.0)]),
         Bearing(t=1.0, a="ff1", b="base", bearing_rad=1.0),
         Altitude(t=1.0, node="ff1", up_m=7.0),
         Status(t=1.0, node="ff1", battery=0.5),
@@ -67,6 +68,20 @@ def test_readings_that_the_paper_has_no_place_for_are_counted_as_not_fused() -> 
     assert tracker.counts()["not_fused"] == 8
     assert place(tracker, "ff1").tolist() == before
     assert [n.code for n in tracker.take_notices()] == ["not_fused"] * 3
+
+
+def test_a_boot_that_sends_raw_samples_is_followed_as_a_pdr_unit() -> None:
+    gait = walked([Stride()] * 10, start_t=1.0)
+    tracker = folded(START)
+    before = place(tracker, "ff1")
+    tracker.fold([*gait.readings()])
+    assert place(tracker, "ff1") - before == pytest.approx(gait.place_m[-1], abs=0.3)
+    assert tracker.counts()["fused"] >= len(gait.readings())
+    restored = PaperATracker.restore(tracker.snapshot())
+    after = walked([Stride()] * 3, start_t=gait.readings()[-1].until_t).readings()
+    for one in (tracker, restored):
+        one.fold([*after])
+    assert restored.estimates() == tracker.estimates()
 
 
 def test_a_displacement_faster_than_5_m_a_second_is_dropped_and_said() -> None:

@@ -8,11 +8,11 @@ from estimator.simulate import scenario_names
 
 
 def test_every_scenario_is_a_case_and_missing_data_sets_are_told(tmp_path: Path) -> None:
-    (tmp_path / "footimu_vicon").mkdir()
+    (tmp_path / "unheard_of").mkdir()
     found, left_out = names(tmp_path)
     assert found == scenario_names()
     assert any(line.startswith("plaza1: there is no folder") for line in left_out)
-    assert any(line.startswith("footimu_vicon: ") and "raw IMU" in line for line in left_out)
+    assert "unheard_of: has no converter" in left_out
 
 
 def test_responders_of_a_scenario_are_judged_and_nobody_else() -> None:

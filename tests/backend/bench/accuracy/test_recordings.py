@@ -3,13 +3,16 @@
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from backend.bench.accuracy.cases import Case, case_of
 from backend.bench.accuracy.entrants import Mode, entrants
 from backend.bench.accuracy.judge import judge
+from backend.recordings.datasets import footimu_vicon
 from estimator.evaluate import Errors
 
+BOOTS = [f"footimu_vicon:{walk}" for walk in footimu_vicon.RECORDINGS]
 WALKS = ["uwb_outdoor_hanyang:LOS_A1", "uwb_outdoor_hanyang:NLOS_A1"]
 
 
@@ -50,6 +53,30 @@ def test_a_walker_without_pdr_is_followed_by_ranges_alone(shared_data: Path, wal
     """The recording's authors: 1.12 and 0.94 m with a Kalman filter on the same ranges and inertial data."""
     assert rmse_m(recording(shared_data, walk), "kirchhoff", "online") <= 0.8
     assert rmse_m(recording(shared_data, walk), "kirchhoff", "smoothed") <= 0.6
+
+
+@pytest.mark.parametrize("walk", BOOTS)
+def test_a_boot_is_followed_by_its_raw_samples_alone(shared_data: Path, walk: str) -> None:
+    """Shapes of walks of some 30 m, one setting for all; what the boot faces at first is in no file."""
+    case = recording(shared_data, walk)
+    for mode in ("online", "smoothed"):
+        found = errors_of(case, "kirchhoff", mode)
+        assert found.coverage >= 0.9
+    assert found.aligned_rmse_m <= 0.15
+    assert found.rmse_m <= 0.2
+    assert np.isnan(found.ve95_m) or found.ve95_m <= 0.2
+
+
+def test_a_boot_on_77_m_of_tiles_errs_by_half_a_hundredth_of_its_way(shared_data: Path) -> None:
+    found = errors_of(recording(shared_data, "footimu_gcp"), "kirchhoff", "smoothed")
+    assert found.aligned_rmse_m <= 0.4
+    assert found.mean_percent <= 0.7
+    assert found.coverage >= 0.9
+
+
+def test_gtsam_gets_the_displacements_that_raw_samples_make(shared_data: Path) -> None:
+    found = errors_of(recording(shared_data, "footimu_gcp"), "gtsam", "smoothed")
+    assert found.aligned_rmse_m <= 0.4
 
 
 def test_among_obstructed_anchors_it_errs_half_as_much_as_a_fix_of_each_second(shared_data: Path) -> None:

@@ -1,0 +1,77 @@
+"""footimu_gcp: a walk along a corridor and back with an inertial unit on a boot, each step on a floor tile.
+
+It starts at the first tile. What its unit faces there is in no file, so it is told to be anything; instead
+the third tile, two metres on, is given as a fix. No other of the 59 is.
+"""
+
+import math
+from itertools import pairwise
+from pathlib import Path
+
+from backend.recordings.datasets.base import KNOWN_SIGMA_M, NotTheDataSet, Vector3, rows, samples
+from estimator.measurements import AnyReading, Node, Position
+
+NAME = "footimu_gcp"
+RECORDINGS: tuple[str, ...] = ()
+TRIAL = "trial36"
+BOOT = "boot"
+RATE_HZ = 200.0
+G_MPS2 = 9.80665
+GAUSS_UT = 100.0
+GIVEN = 2
+"""Which tile is given, from 0."""
+STANDING_RADPS, STANDING_S = 1.0, 0.1
+"""A boot that turns no faster for so long stands."""
+
+
+def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
+    """The readings of the walk.
+
+    Args:
+        folder: where `trial36.csv` is.
+        recording: there is but one.
+
+    Raises:
+        NotTheDataSet: the file is missing.
+    """
+    del recording
+    table = _table(folder)
+    stood_t, east, north = tiles(folder)[GIVEN]
+    fix = Position(t=stood_t, node=BOOT, position_m=(east, north, 0.0), sigma_m=(KNOWN_SIGMA_M,) * 3)
+    begins = Node(
+        t=table[0]["t_s"],
+        node=BOOT,
+        role="responder",
+        callsign="Boot",
+        position_m=(0.0, 0.0, 0.0),
+        sigma_m=KNOWN_SIGMA_M,
+        heading_sigma_rad=math.pi,
+    )
+    forces = [(G_MPS2 * row["ax_g"], G_MPS2 * row["ay_g"], G_MPS2 * row["az_g"]) for row in table]
+    rates = [(row["gx"], row["gy"], row["gz"]) for row in table]
+    fields = [(GAUSS_UT * row["mx"], GAUSS_UT * row["my"], GAUSS_UT * row["mz"]) for row in table]
+    return [begins, fix, *samples(BOOT, RATE_HZ, [row["t_s"] for row in table], forces, rates, fields)]
+
+
+def tiles(folder: Path) -> list[Vector3]:
+    """Each tile that the boot stood on: in the middle of which time (s), east and north (m).
+
+    Raises:
+        NotTheDataSet: a file is missing, or it stood as often as no tiles are given for.
+    """
+    places = [(float(row["x_m"]), float(row["y_m"])) for row in rows(folder / f"{TRIAL}_gcp.csv")]
+    stood = _standstills(_table(folder))
+    if len(stood) != len(places):
+        raise NotTheDataSet(f"{folder}: the boot stood {len(stood)} times, and {len(places)} tiles are given")
+    return [(t, *place) for t, place in zip(stood, places, strict=True)]
+
+
+def _table(folder: Path) -> list[dict[str, float]]:
+    return [{name: float(word) for name, word in row.items()} for row in rows(folder / f"{TRIAL}.csv")]
+
+
+def _standstills(table: list[dict[str, float]]) -> list[float]:
+    """The middle of each time that a boot stood (s)."""
+    swings = [row["t_s"] for row in table if math.hypot(row["gx"], row["gy"], row["gz"]) > STANDING_RADPS]
+    edges = [table[0]["t_s"], *swings, table[-1]["t_s"]]
+    return [0.5 * (one + other) for one, other in pairwise(edges) if other - one > STANDING_S]

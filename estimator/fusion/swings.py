@@ -1,0 +1,67 @@
+"""What a heading that is hardly known does to places: it swings them along an arc, not along a line.
+
+A covariance is linear: it lets a place move aside, however far, and keeps its distance from where the heading
+was taken up. Turned by a radian, who is shown at the end of a long way would be far off and shown as certain.
+So the second moments of the arc take the place of those of its tangent (as a second-order filter does,
+Bar-Shalom et al. 2001, 10.3, but in closed form and for any angle).
+"""
+
+import numpy as np
+
+from estimator.fusion.state import FusionState
+from estimator.graph.dense import Array
+
+LOOSE_RAD = 0.1
+"""What a heading that is better known does beyond the first order is less than a hundredth of the way."""
+
+
+def loose_headings(state: FusionState, covariance: Array) -> list[int]:
+    """Rows of the headings that are hardly known.
+
+    Args:
+        state: the fusion.
+        covariance: Σ of its graph, n × n.
+    """
+    units = (state.graph.starts[node.unit] for node in state.nodes.values() if node.mode == "unit")
+    return [row for row in units if covariance[row, row] > LOOSE_RAD**2]
+
+
+def swung_m2(across: Array, variance: Array) -> Array:
+    """What is to be added to covariances of places for headings, m × 2 × 2 (m²).
+
+    Of several headings only that counts which moves a place most: they may be known to each other, and a
+    tangent that was taken off twice would leave less than nothing.
+
+    Args:
+        across: covariance of the places with each heading, m × 2 × h (m rad).
+        variance: of the headings, h (rad²).
+    """
+    if not len(variance):
+        return np.zeros((len(across), 2, 2))
+    moved = (across**2).sum(axis=1) / variance
+    most = np.argmax(moved, axis=1)
+    own = np.take_along_axis(across, most[:, None, None], axis=2)[:, :, 0]
+    return arc_m2(own, own, variance[most])
+
+
+def arc_m2(one: Array, other: Array, variance: Array) -> Array:
+    """What an arc's second moments are beyond those of its tangent, … × 2 × 2 (m²).
+
+    With ψ ~ N(0, v) a place at the end of a lever l is off by l sin ψ aside and l (cos ψ − 1) along it:
+    E sin² = (1 − exp(−2v)) / 2, and E (1 − cos)² = 3/2 − 2 exp(−v/2) + exp(−2v) / 2. The lever is what the
+    place's covariance with the heading tells: Σ_pψ / v, a quarter turn on.
+
+    Args:
+        one: covariance of a place with the heading, … × 2 (m rad).
+        other: of another place, or of the same, … × 2.
+        variance: v of the heading, … (rad²).
+    """
+    known = np.maximum(variance, 1e-12)[..., None]
+    aside, other_aside = one / known, other / known
+    along = np.stack([aside[..., 1], -aside[..., 0]], axis=-1)
+    other_along = np.stack([other_aside[..., 1], -other_aside[..., 0]], axis=-1)
+    sine = 0.5 * -np.expm1(-2.0 * variance) - variance
+    cosine = 1.5 - 2.0 * np.exp(-0.5 * variance) + 0.5 * np.exp(-2.0 * variance)
+    found = sine[..., None, None] * aside[..., :, None] * other_aside[..., None, :]
+    found += cosine[..., None, None] * along[..., :, None] * other_along[..., None, :]
+    return np.asarray(found)

@@ -1,0 +1,194 @@
+"""From samples to displacements, piece by piece, however they are cut."""
+
+import math
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from estimator.graph.dense import Array
+from estimator.inertial.samples import Samples
+from estimator.inertial.strapdown import Strapdown, advance
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.imu import RATE_MIN_HZ
+
+EACH_S = 0.5
+"""A displacement is told so often."""
+JITTER_S, JITTER_MOST_S = 0.002, 0.05
+"""By so much epochs are off that a gateway gives, before they have told; and by so much at most, where
+samples follow each other all the same."""
+UNUSUAL = 4.0
+"""An epoch that is late by more of the usual jitters is no jitter: samples are missing."""
+FOLLOWED, TOLD = 0.2, 0.1
+"""So much of a jitter the boot's own clock follows with each piece, that none of the two clocks runs away;
+and so much a piece tells of how much they jitter."""
+BRIDGED_S = 0.1
+"""So long a gap is bridged: between a swing's samples there is a straight line for a tenth of a second."""
+BRIDGED_OFF = 0.3
+"""What a bridge may be off by, as a share of what goes on in it."""
+STRIDE_SIGMA_M_PER_ROOT_M = 0.02
+"""Random error of a stride, more than the filter itself believes, which takes each standstill for perfect:
+published errors of ZUPT-aided units are 0.3 to 1 % of ways of some ten strides, heights as much."""
+FASTEST_MPS = 25.0
+"""A runner's boot swings twice as fast as he runs."""
+TURNS_RADPS, TURNED_RAD, TURNED_RADPS, ANYWHERE_RAD = 3.0, 1.0, 0.1, 1.8
+"""While samples are missing their bearer may turn on his heel; then he mostly goes on; in the end he may face
+anything, which is 1.8 rad."""
+
+
+class Led(Displacement, tag="led", frozen=True):
+    """A displacement that samples have made: it counts with them."""
+
+
+class Navigation(NamedTuple):
+    """A boot's navigation between two pieces.
+
+    Attributes:
+        t: end of its newest sample, by its own clock (s).
+        told_t: end of what has been told as displacements (s).
+        began_rad: what its x axis was told to face when it began.
+        unsure_m2: variance of its place by what has been bridged since `told_t` (m²).
+        jitter_s2: variance of the epochs that its gateway gives (s²).
+        newest: its newest sample, 6 (m/s², rad/s).
+        boot: its strapdown navigation; its place counts from where it was at `told_t`.
+    """
+
+    t: float
+    told_t: float
+    began_rad: float
+    unsure_m2: float
+    jitter_s2: float
+    newest: Array
+    boot: Strapdown
+
+    @classmethod
+    def new(cls, t: float, heading_rad: float) -> Self:
+        """That of a boot of which nothing is known at `t` but what its x axis faces."""
+        boot = Strapdown.new(heading_rad)
+        return cls(t, t, heading_rad, 0.0, JITTER_S**2, np.zeros(6), boot)
+
+
+class Navigated(NamedTuple):
+    """What a piece has led to.
+
+    Attributes:
+        navigation: after it.
+        displacements: in order of epoch, in the frame whose x axis the boot faced at the start.
+        turned_rad2: variance of its heading by samples that are missing, or may be, before it (rad²).
+        text: why samples could not be used, if they could not.
+    """
+
+    navigation: Navigation
+    displacements: list[Led]
+    turned_rad2: float
+    text: str | None
+
+
+def navigate(before: Navigation | None, piece: Samples, heading_rad: float) -> Navigated:
+    """Sum up a piece of samples.
+
+    Args:
+        before: where the node's earlier ones have led to; None: these are its first.
+        piece: the samples.
+        heading_rad: direction of the sensor's x axis at rest, seen from above, where the node is new.
+    """
+    known = before or Navigation.new(piece.t, heading_rad)
+    if piece.rate_hz < RATE_MIN_HZ:
+        text = f"{piece.rate_hz:g} samples a second are fewer than {RATE_MIN_HZ:g}"
+        return Navigated(known, [], 0.0, text)
+    step_s = 1.0 / piece.rate_hz
+    samples, off_s = piece.array, piece.t - known.t
+    if off_s < -min(JITTER_MOST_S, 0.5 * piece.count * step_s):
+        samples = samples[round(-off_s / step_s) :]
+        if not len(samples):
+            return Navigated(known, [], 0.0, "samples of this time were reported before")
+        off_s = 0.0
+    samples, known, turned = _joined(known, off_s, step_s, samples)
+    found, after, told = _led(known, piece.node, samples, step_s)
+    return Navigated(after, found, turned, told)
+
+
+def _joined(
+    known: Navigation, off_s: float, step_s: float, samples: Array
+) -> tuple[Array, Navigation, float]:
+    """Samples that begin `off_s` after the last one ended, put behind it.
+
+    A gateway's epochs jitter, and no sample is lost; or some are. What is later than its epochs usually are
+    is taken for the latter.
+
+    Returns:
+        The samples with those that bridge what is missing; where they go on; the variance of the heading by
+        what is missing (rad²).
+    """
+    before, known = known.newest, known._replace(newest=samples[-1].copy())
+    if off_s <= max(1.5 * step_s, UNUSUAL * math.sqrt(known.jitter_s2)):
+        jitter_s2 = known.jitter_s2 + TOLD * (min(off_s**2, JITTER_MOST_S**2) - known.jitter_s2)
+        return samples, known._replace(t=known.t + FOLLOWED * off_s, jitter_s2=jitter_s2), 0.0
+    missing = round(off_s / step_s)
+    if off_s > BRIDGED_S or not known.boot.levelled:
+        turned = min(TURNS_RADPS * off_s, TURNED_RAD + TURNED_RADPS * off_s, ANYWHERE_RAD)
+        t = known.t + off_s
+        return samples, known._replace(t=t, told_t=t, unsure_m2=0.0, boot=known.boot.anew()), turned**2
+    shares = (np.arange(1, missing + 1) / (missing + 1.0))[:, None]
+    bridge = before + shares * (samples[0] - before)
+    velocity, rate = known.boot.velocity, bridge[:, 3:]
+    lost_m2 = (BRIDGED_OFF * off_s) ** 2 * float(np.dot(velocity, velocity))
+    turned_rad2 = (BRIDGED_OFF * off_s) ** 2 * float((rate**2).sum(axis=1).max())
+    boot = known.boot.copy()
+    boot.covariance[range(6, 9), range(6, 9)] += turned_rad2
+    known = known._replace(
+        t=known.t + off_s - missing * step_s, unsure_m2=known.unsure_m2 + lost_m2, boot=boot
+    )
+    return np.vstack([bridge, samples]), known, turned_rad2
+
+
+def _led(
+    known: Navigation, node: str, samples: Array, step_s: float
+) -> tuple[list[Led], Navigation, str | None]:
+    """What samples that go on from `known` lead to."""
+    boot, told_t, unsure_m2 = known.boot.copy(), known.told_t, known.unsure_m2
+    force, rate = np.ascontiguousarray(samples[:, :3]), np.ascontiguousarray(samples[:, 3:])
+    found: list[Led] = []
+    text, done = None, 0
+    while done < len(force):
+        # Up to where the next displacement is told, by the boot's own clock.
+        upto = min(max(round((told_t + EACH_S - known.t) / step_s), done + 1), len(force))
+        navigates = boot.levelled
+        done += advance(boot, force[done:upto], rate[done:upto], step_s)
+        t = known.t + done * step_s
+        if not navigates:
+            if not boot.levelled and t > told_t + EACH_S + JITTER_MOST_S:
+                text = "its samples feel no gravity: the unit is dead, or measures in other units"
+            told_t = t if boot.levelled else told_t
+        elif t >= told_t + EACH_S - 0.5 * step_s:
+            if _sound(boot):
+                found.append(_displacement(boot, node, told_t, t, unsure_m2))
+            else:
+                text = "the boot never stood, or its samples are wrong: it is levelled anew"
+                boot = boot.anew()
+            told_t, unsure_m2 = t, 0.0
+            boot.place[:] = boot.unheld[3:] = 0.0
+    end_t = known.t + len(force) * step_s
+    return found, known._replace(t=end_t, told_t=told_t, unsure_m2=unsure_m2, boot=boot), text
+
+
+def _sound(boot: Strapdown) -> bool:
+    """Whether it moves as a boot may, and knows how well it knows that."""
+    speed = float(np.sqrt(np.dot(boot.velocity, boot.velocity)))
+    finite = np.isfinite(boot.covariance).all() and np.isfinite(boot.attitude).all()
+    return speed < FASTEST_MPS and bool(finite) and bool(np.isfinite(boot.place).all())
+
+
+def _displacement(boot: Strapdown, node: str, from_t: float, t: float, unsure_m2: float) -> Led:
+    east, north, up = boot.place.tolist()
+    speed_m2 = max(float(boot.covariance[range(3, 6), range(3, 6)].max()), 0.0) * (t - from_t) ** 2
+    way_m2 = STRIDE_SIGMA_M_PER_ROOT_M**2 * float(np.sqrt(np.dot(boot.place, boot.place)))
+    # What it stands on may have moved: then it went so far.
+    moved_m2 = float(np.dot(boot.unheld[3:], boot.unheld[3:]))
+    return Led(
+        t=t,
+        node=node,
+        delta_m=(east, north, up),
+        from_t=from_t,
+        heading_rad=boot.heading_rad,
+        sigma_m=float(np.sqrt(way_m2 + speed_m2 + moved_m2 + unsure_m2)) + 1e-6,
+    )

@@ -1,0 +1,67 @@
+"""When a boot stands, and how nearly: what each sample says of its speed, as a standard deviation.
+
+Detectors as SHOE (Skog et al. 2010) hold a sum of forces and rates against a threshold, and each walk wants
+its own. A boot that stands rolls over heel and ball: the unit on it moves with ω × r, r being the hand's
+width to where it touches the ground. So what it rotates by says how fast it can be, and nothing needs to be
+decided: a boot that hardly turns tells its velocity well, and one that swings tells nothing.
+"""
+
+import numpy as np
+from numba import njit
+
+from estimator.graph.dense import Array
+
+LEVER_M = 0.1
+"""From the unit to where the boot stands."""
+SHAKEN_S = 0.03
+"""What is felt beside gravity changes direction several times in so long: times it, it is a speed."""
+STEADY_MPS = 0.005
+MOST_MPS = 0.2
+"""What may be faster is no standstill."""
+REMEMBERED_S = 0.02
+"""A boot that swings has moments in which nothing is felt: it stands when it has felt little for so long."""
+ALIKE_S = 0.025
+"""Nearer to each other, standstills have the same error: they count once."""
+BEFORE = np.array([0.0, 0.0, 0.0, 1e6, 1e6])
+"""What a boot has felt before its first sample: anything."""
+
+
+@njit(cache=True, error_model="numpy")
+def felt_by(felt: Array, force: Array, rate: Array, bias: Array, gravity_mps2: float, step_s: float) -> None:
+    """Take in a sample.
+
+    Args:
+        felt: mean force 3, squared rate, squared force beside gravity: of the last `REMEMBERED_S`, the
+            squares no less than the sample's own; changed in place.
+        force: specific force, 3 (m/s²).
+        rate: angular rate, 3 (rad/s).
+        bias: of the gyros, 3 (rad/s).
+        gravity_mps2: as the unit feels it.
+        step_s: time from one sample to the next (s).
+    """
+    new = 1.0 - np.exp(-step_s / REMEMBERED_S)
+    squared = turning = beside = 0.0
+    for c in range(3):
+        felt[c] += new * (force[c] - felt[c])
+        squared += felt[c] * felt[c]
+        turning += (rate[c] - bias[c]) ** 2
+    mean = np.sqrt(squared)
+    scale = gravity_mps2 / max(mean, 1e-9)
+    for c in range(3):
+        beside += (force[c] - scale * felt[c]) ** 2
+    # A unit that falls, or is dead, feels steadily what is no gravity.
+    beside = max(beside, (mean - gravity_mps2) ** 2)
+    felt[3] = max(turning, felt[3] + new * (turning - felt[3]))
+    felt[4] = max(beside, felt[4] + new * (beside - felt[4]))
+
+
+@njit(cache=True, error_model="numpy")
+def stance_sigma(felt: Array, since_s: float) -> float:
+    """How far a boot's velocity is from nil along each axis (m/s); infinite where it does not stand.
+
+    Args:
+        felt: see `felt_by`.
+        since_s: time since a standstill last counted (s).
+    """
+    sigma = np.sqrt(STEADY_MPS**2 + LEVER_M**2 * felt[3] + SHAKEN_S**2 * felt[4])
+    return float(sigma) if since_s >= ALIKE_S and sigma < MOST_MPS else np.inf

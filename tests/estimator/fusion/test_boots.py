@@ -1,0 +1,235 @@
+"""Firefighters whose boots send raw samples, followed as those with any PDR unit."""
+
+import math
+
+import numpy as np
+import pytest
+from msgspec import structs
+
+from estimator.estimate import NodeEstimate
+from estimator.measurements import AnyReading
+from estimator.measurements.altitude import Altitude
+from estimator.measurements.imu import Imu
+from estimator.measurements.node import Node
+from estimator.measurements.range import Range
+from estimator.measurements.retire import Retire
+from estimator.trackers.base import TrackerSettings
+from estimator.trackers.batch import BatchSmoother
+from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.inertial.gait import AROUND, STEP_S, Gait, Stride, walked
+
+START_T = 1000.0
+GAIT = walked(AROUND, START_T, heading_rad=0.7).noisy(np.random.default_rng(3))
+BEGINS = Node(
+    t=START_T, node="ff1", role="responder", position_m=(5.0, -3.0, 0.0), sigma_m=0.1, heading_rad=0.7
+)
+
+
+def incident(gait: Gait = GAIT, each: int = 200) -> list[AnyReading]:
+    return [BEGINS, *gait.readings(each)]
+
+
+def truth_m(gait: Gait, t: float) -> np.ndarray:
+    there = [np.interp(t, gait.t + STEP_S, gait.place_m[:, axis]) for axis in range(3)]
+    return np.asarray(np.array(there) + np.array([5.0, -3.0, 0.0]))
+
+
+def shown(tracker: KirchhoffTracker) -> NodeEstimate:
+    return next(e for e in tracker.estimates() if e.node == "ff1")
+
+
+def test_he_is_shown_where_he_is_all_the_time() -> None:
+    tracker = KirchhoffTracker()
+    tracker.fold([BEGINS])
+    for reading in GAIT.readings():
+        tracker.fold([reading])
+        estimate = shown(tracker)
+        assert estimate.position_m is not None
+        assert np.linalg.norm(np.array(estimate.position_m) - truth_m(GAIT, estimate.t)) < 0.5
+        assert reading.until_t - estimate.t < 1.0
+    assert estimate.heading_rad == pytest.approx(GAIT.heading_rad, abs=0.1)
+    assert estimate.position_m is not None
+    assert estimate.position_m[2] == pytest.approx(1.02, abs=0.2)
+
+
+def test_a_reading_counts_once_however_many_displacements_it_makes() -> None:
+    tracker = KirchhoffTracker()
+    readings = incident(each=500)
+    tracker.fold([*readings, readings[3]])
+    counts = tracker.counts()
+    assert counts["received"] == len(readings) + 1
+    assert counts["fused"] == len(readings)
+    assert counts["not_fused"] == 1
+
+
+def test_readings_out_of_order_give_the_same() -> None:
+    in_order, late = KirchhoffTracker(), KirchhoffTracker()
+    in_order.fold(incident())
+    readings = incident()
+    late.fold([*readings[:5], *readings[9:15]])
+    late.estimates()
+    late.fold([*readings[15:], *readings[5:9]])
+    assert late.estimates() == in_order.estimates()
+
+
+@pytest.mark.parametrize("cut", [1, 4, 12])
+def test_a_tracker_restored_in_the_middle_of_a_stride_goes_on_to_the_last_bit(cut: int) -> None:
+    readings = incident(each=130)
+    whole = KirchhoffTracker()
+    whole.fold(readings[:cut])
+    restored = KirchhoffTracker.restore(whole.snapshot())
+    for tracker in (whole, restored):
+        tracker.fold(readings[cut:])
+    assert restored.estimates() == whole.estimates()
+
+
+def test_the_smoothed_view_follows_him_too() -> None:
+    track = BatchSmoother(TrackerSettings()).smooth(incident())["ff1"]
+    assert track[-1].t > GAIT.t[-1] - 1.0
+    for point in track:
+        assert np.linalg.norm(np.array(point.position_m) - truth_m(GAIT, point.t)) < 0.6
+
+
+def heard(gait: Gait, place_m: tuple[float, float, float], sigma_m: float, each_s: float) -> list[AnyReading]:
+    """Ranges to one radio all the time."""
+    chance = np.random.default_rng(5)
+    return [
+        Range(
+            t=t,
+            a="ff1",
+            b="a1",
+            range_m=abs(float(np.linalg.norm(truth_m(gait, t) - place_m) + chance.normal(0.0, 0.1))),
+            technology="uwb",
+            sigma_m=sigma_m,
+        )
+        for t in np.arange(START_T + each_s, gait.t[-1], each_s).tolist()
+    ]
+
+
+ANCHOR = Node(t=START_T, node="a1", role="anchor", position_m=(0.0, 10.0, 1.0), sigma_m=0.05)
+
+
+@pytest.mark.parametrize("heard_each_s", [None, 0.25, 0.5])
+def test_while_samples_are_missing_he_may_have_turned(heard_each_s: float | None) -> None:
+    """Also where somebody is heard meanwhile, at the very epoch at which samples come again."""
+    gait = walked([Stride()] * 20, START_T, heading_rad=0.7)
+    tracker = KirchhoffTracker()
+    more = [] if heard_each_s is None else [ANCHOR, *heard(gait, (0.0, 10.0, 1.0), 5.0, heard_each_s)]
+    tracker.fold([BEGINS, *(r for r in more if r.t <= START_T + 6.0), gait.imu(0, 1200)])
+    sure = shown(tracker)
+    tracker.fold([r for r in more if START_T + 6.0 < r.t <= START_T + 13.0])
+    tracker.fold([gait.imu(1600, 2600), Altitude(t=START_T + 8.5, node="ff1", up_m=0.0)])
+    unsure = shown(tracker)
+    assert sure.heading_sigma_rad is not None
+    assert unsure.heading_sigma_rad is not None
+    # What is heard afterwards tells some of it again.
+    assert sure.heading_sigma_rad < 0.2 < (0.5 if heard_each_s is None else 0.25) < unsure.heading_sigma_rad
+    assert unsure.position_m is not None
+    assert unsure.covariance_m2 is not None
+    ee, en, _, nn, _, _ = unsure.covariance_m2
+    off = np.array(unsure.position_m) - truth_m(gait, unsure.t)
+    assert off[:2] @ np.linalg.solve([[ee, en], [en, nn]], off[:2]) < 5.99
+
+
+@pytest.mark.parametrize("each", [10, 200, 1000, 2200])
+def test_radios_are_heard_beside_readings_of_any_length(each: int) -> None:
+    """A reading of ten seconds comes after all that was heard meanwhile."""
+    ranges = heard(GAIT, (0.0, 10.0, 1.0), 0.1, 0.5)
+    tracker = KirchhoffTracker()
+    tracker.fold([ANCHOR, *incident(each=each), *ranges])
+    estimate = shown(tracker)
+    assert estimate.position_m is not None
+    assert np.linalg.norm(np.array(estimate.position_m) - truth_m(GAIT, estimate.t)) < 0.3
+    assert tracker.counts()["not_fused"] == 0
+    for point in BatchSmoother(TrackerSettings()).smooth([ANCHOR, *incident(each=each), *ranges])["ff1"]:
+        assert np.linalg.norm(np.array(point.position_m) - truth_m(GAIT, point.t)) < 0.6
+
+
+def test_a_heading_that_is_told_after_the_first_samples_turns_his_way() -> None:
+    gait = walked([Stride()] * 10, START_T, heading_rad=0.7)
+    tracker = KirchhoffTracker()
+    tracker.fold([Node(t=START_T, node="base", role="base", position_m=(5.0, -3.0, 0.0))])
+    readings = gait.readings(100)
+    tracker.fold([readings[0], structs.replace(BEGINS, t=START_T + 0.4), *readings[1:]])
+    estimate = shown(tracker)
+    assert estimate.position_m is not None
+    assert np.linalg.norm(np.array(estimate.position_m) - truth_m(gait, estimate.t)) < 0.5
+
+
+def test_who_turns_to_the_east_at_once_has_not_begun_there() -> None:
+    begins = structs.replace(BEGINS, heading_rad=1.5)
+    gait = walked([Stride(turn_rad=-1.5), *[Stride()] * 10], START_T, heading_rad=1.5, rests_s=0.6)
+    tracker = KirchhoffTracker()
+    tracker.fold([begins, *gait.readings()])
+    estimate = shown(tracker)
+    assert estimate.position_m is not None
+    assert np.linalg.norm(np.array(estimate.position_m) - truth_m(gait, estimate.t)) < 0.7
+
+
+def test_radios_that_hear_a_boot_tell_what_it_faced() -> None:
+    """Three known radios, and a unit that may face anything at first."""
+    places = {"a1": (0.0, 10.0, 1.0), "a2": (20.0, -5.0, 1.0), "a3": (10.0, 15.0, 1.0)}
+    chance = np.random.default_rng(5)
+    radios = [Node(t=START_T, node=n, role="anchor", position_m=p, sigma_m=0.05) for n, p in places.items()]
+    ranges = [
+        Range(
+            t=t,
+            a="ff1",
+            b=name,
+            range_m=float(np.linalg.norm(truth_m(GAIT, t) - place) + chance.normal(0.0, 0.1)),
+            technology="uwb",
+            sigma_m=0.1,
+        )
+        for t in np.arange(START_T + 0.3, GAIT.t[-1], 0.5).tolist()
+        for name, place in places.items()
+    ]
+    unknown = Node(
+        t=START_T,
+        node="ff1",
+        role="responder",
+        position_m=(5.0, -3.0, 0.0),
+        sigma_m=0.1,
+        heading_sigma_rad=3.0,
+    )
+    tracker = KirchhoffTracker()
+    tracker.fold([unknown, *radios, *ranges, *GAIT.readings()])
+    estimate = shown(tracker)
+    assert estimate.position_m is not None
+    assert np.linalg.norm(np.array(estimate.position_m) - truth_m(GAIT, estimate.t)) < 0.3
+    assert estimate.heading_sigma_rad is not None
+    assert estimate.heading_sigma_rad < 0.1
+    assert math.cos((estimate.heading_rad or 0.0) - GAIT.heading_rad) > math.cos(0.1)
+
+
+@pytest.mark.parametrize("role", ["base", "breadcrumb"])
+def test_samples_of_what_does_not_walk_are_set_aside(role: str) -> None:
+    tracker = KirchhoffTracker()
+    tracker.fold([Node(t=START_T, node="ff1", role=role), *GAIT.readings()])  # type: ignore[arg-type]
+    assert tracker.counts()["not_fused"] == len(GAIT.readings())
+    assert [n.code for n in tracker.take_notices()] == ["conflict"]
+
+
+def test_who_has_retired_walks_no_more() -> None:
+    tracker = KirchhoffTracker()
+    tracker.fold([BEGINS, *GAIT.readings()[:10], Retire(t=START_T + 12.0, node="ff1")])
+    before = shown(tracker).position_m
+    tracker.fold(GAIT.readings()[12:])
+    assert shown(tracker).position_m == before
+
+
+def test_a_unit_too_slow_to_be_followed_says_so_once() -> None:
+    slow = [
+        Imu(
+            t=float(t),
+            node="ff1",
+            rate_hz=5.0,
+            accel_mps2=[(0.0, 0.0, 9.8)] * 5,
+            gyro_radps=[(0.0, 0.0, 0.0)] * 5,
+        )
+        for t in range(1000, 1010)
+    ]
+    tracker = KirchhoffTracker()
+    tracker.fold([BEGINS, *slow])
+    notices = tracker.take_notices()
+    assert [n.code for n in notices] == ["not_fused"]
+    assert "5 samples a second" in notices[0].text

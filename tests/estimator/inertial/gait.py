@@ -1,0 +1,125 @@
+"""A boot that walks: its true places, and what an inertial unit on it feels."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from estimator.graph.dense import Array
+from estimator.inertial.strapdown import GRAVITY_MPS2
+from estimator.measurements.imu import Imu
+
+STEP_S = 0.005
+STANCE_S, SWING_S = 0.6, 0.5
+STEEPEST_RAD = 0.7
+LIFTED_M = 0.12
+
+
+class Stride(NamedTuple):
+    """From one foothold to the next: so far, so much to the left, so much up."""
+
+    length_m: float = 1.3
+    turn_rad: float = 0.0
+    up_m: float = 0.0
+
+
+class Gait(NamedTuple):
+    """A walk.
+
+    Attributes:
+        t: epochs of its samples, n (s).
+        force: specific force, n × 3 (m/s²).
+        rate: angular rate, n × 3 (rad/s).
+        place_m: where the boot is when each sample ends, n × 3 (m).
+        heading_rad: what it faces in the end.
+    """
+
+    t: Array
+    force: Array
+    rate: Array
+    place_m: Array
+    heading_rad: float
+
+    def imu(self, first: int = 0, last: int | None = None, node: str = "ff1") -> Imu:
+        """Its samples as one reading."""
+        some = slice(first, last)
+        return Imu(
+            t=float(self.t[first]),
+            node=node,
+            rate_hz=1.0 / STEP_S,
+            accel_mps2=[tuple(row) for row in self.force[some].tolist()],
+            gyro_radps=[tuple(row) for row in self.rate[some].tolist()],
+        )
+
+    def readings(self, each: int = 200, node: str = "ff1") -> list[Imu]:
+        """Its samples, so many a reading."""
+        return [self.imu(first, first + each, node) for first in range(0, len(self.t), each)]
+
+    def noisy(self, rng: np.random.Generator, bias_radps: float = 0.005) -> "Gait":
+        """The same, felt by a small MEMS unit whose gyros have biases."""
+        bias = rng.normal(0.0, bias_radps, 3)
+        force = self.force + rng.normal(0.0, 0.03, self.force.shape)
+        return self._replace(force=force, rate=self.rate + bias + rng.normal(0.0, 0.005, self.rate.shape))
+
+
+def walked(
+    strides: list[Stride],
+    start_t: float = 0.0,
+    heading_rad: float = 0.0,
+    mounted: Rotation | None = None,
+    rests_s: float = 2.0,
+) -> Gait:
+    """A walk that begins and ends with a rest.
+
+    Args:
+        strides: its strides.
+        start_t: epoch of the first sample (s).
+        heading_rad: what the boot faces at first.
+        mounted: the unit's attitude on a boot that stands.
+        rests_s: how long it rests.
+    """
+    fine = _way(strides, heading_rad, rests_s)
+    # Twice as fine: samples lie between the epochs at which the truth is told.
+    places, attitudes = (
+        fine[:, :3],
+        Rotation.from_euler("ZY", fine[:, 3:5]) * (mounted or Rotation.identity()),
+    )
+    half = 0.5 * STEP_S
+    second = (places[2:] - 2.0 * places[1:-1] + places[:-2]) / half**2
+    felt = second + np.array([0.0, 0.0, GRAVITY_MPS2])
+    force = attitudes[1:-1].inv().apply(felt)[::2]
+    turned = (attitudes[:-2].inv() * attitudes[2:]).as_rotvec() / STEP_S
+    t: Array = start_t + STEP_S * np.arange(len(force), dtype=np.float64)
+    return Gait(t, force, turned[::2], places[2::2][: len(force)] - places[0], float(fine[-1, 3]))
+
+
+def _way(strides: list[Stride], heading_rad: float, rests_s: float) -> Array:
+    """Place, heading and pitch at each half step, k × 5."""
+    half = 0.5 * STEP_S
+    here = np.array([0.0, 0.0, 0.0, heading_rad, 0.0])
+    parts = [np.tile(here, (round(rests_s / half), 1))]
+    share = np.arange(1, round(SWING_S / half) + 1) / round(SWING_S / half)
+    # Its first two derivatives are nil at both ends, as are those of what is made of it.
+    smooth = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+    lifted = 64.0 * share**3 * (1.0 - share) ** 3
+    for stride in strides:
+        facing = here[3] + stride.turn_rad
+        ahead = np.array([np.cos(facing), np.sin(facing)]) * stride.length_m
+        there = here + np.array([*ahead, stride.up_m, stride.turn_rad, 0.0])
+        swing = here + smooth[:, None] * (there - here)
+        swing[:, 2] += LIFTED_M * lifted
+        swing[:, 4] = STEEPEST_RAD * lifted * np.cos(np.pi * share)
+        parts += [swing, np.tile(there, (round(STANCE_S / half), 1))]
+        here = there
+    parts.append(np.tile(here, (round(rests_s / half), 1)))
+    return np.concatenate(parts)
+
+
+AROUND = [
+    *[Stride()] * 8,
+    Stride(0.9, 0.8),
+    Stride(0.9, 0.8),
+    *[Stride()] * 6,
+    *[Stride(0.4, -0.1, 0.17)] * 6,
+]
+"""Along a corridor, around its corner, and up a stair."""

@@ -1,0 +1,228 @@
+"""From readings to displacements."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from msgspec import structs
+from scipy.spatial.transform import Rotation
+
+from estimator.inertial.navigation import BRIDGED_S, EACH_S, JITTER_MOST_S, Led, Navigation, navigate
+from estimator.inertial.record import navigation_of, record_of
+from estimator.inertial.samples import PIECE_S, pieces
+from estimator.inertial.strapdown import ALIGN_S
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.imu import Imu
+from tests.estimator.inertial.gait import AROUND, STEP_S, Gait, Stride, walked
+
+GAIT = walked(AROUND, start_t=50.0).noisy(np.random.default_rng(1))
+
+
+def followed(readings: list[Imu], heading_rad: float = 0.0) -> tuple[list[Led], list[str]]:
+    known: Navigation | None = None
+    found, texts = [], []
+    for reading in readings:
+        for piece in pieces(reading):
+            done = navigate(known, piece, heading_rad)
+            known = done.navigation
+            found += done.displacements
+            texts += [done.text] if done.text else []
+    return found, texts
+
+
+def where(displacements: Sequence[Displacement]) -> np.ndarray:
+    return np.asarray(np.sum(np.array([d.delta_m for d in displacements]), axis=0))
+
+
+def true_m(gait: Gait, t: float) -> np.ndarray:
+    return np.array([np.interp(t, gait.t + STEP_S, gait.place_m[:, axis]) for axis in range(3)])
+
+
+def test_displacements_follow_each_other_and_lead_along_the_way() -> None:
+    found, texts = followed(GAIT.readings())
+    assert texts == []
+    assert all(after.from_t == before.t for before, after in pairwise(found))
+    assert all(d.from_t is not None and d.t - d.from_t == pytest.approx(EACH_S) for d in found)
+    assert found[0].from_t == pytest.approx(50.0 + ALIGN_S)
+    for upto in range(10, len(found), 7):
+        assert np.linalg.norm(where(found[:upto]) - true_m(GAIT, found[upto - 1].t)) < 0.3
+    assert np.linalg.norm(where(found) - GAIT.place_m[-1]) < 0.3
+
+
+def test_a_displacement_says_what_its_way_is_unsure_by() -> None:
+    """Its sigma, summed up, holds what the ways of twenty units are off."""
+    off, told = [], []
+    for seed in range(20):
+        gait = walked(AROUND).noisy(np.random.default_rng(seed), bias_radps=0.0)
+        found, _ = followed(gait.readings())
+        off.append(where(found) - true_m(gait, found[-1].t))
+        told.append(sum((d.sigma_m or 0.0) ** 2 for d in found))
+    nees = np.sum(np.square(off), axis=1) / (3.0 * np.array(told))
+    assert 0.02 < np.mean(nees) < 1.0
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.lists(st.integers(1, 900), min_size=1, max_size=20))
+def test_displacements_are_the_same_however_samples_are_cut_into_readings(lengths: list[int]) -> None:
+    cuts = np.unique(np.clip(np.cumsum([0, *lengths, len(GAIT.t)]), 0, len(GAIT.t))).tolist()
+    found, _ = followed([GAIT.imu(first, last) for first, last in pairwise(cuts)])
+    expected, _ = followed(GAIT.readings(1000))
+    assert len(found) == len(expected)
+    for one, other in zip(found, expected, strict=True):
+        assert one.t == pytest.approx(other.t, abs=1e-6)
+        np.testing.assert_allclose(one.delta_m, other.delta_m, atol=1e-9)
+
+
+def test_its_heading_is_told_in_the_frame_that_it_began_in() -> None:
+    found, _ = followed(GAIT.readings(), heading_rad=0.4)
+    assert found[0].heading_rad == pytest.approx(0.4, abs=0.01)
+    assert found[-1].heading_rad == pytest.approx(0.4 + GAIT.heading_rad, abs=0.1)
+
+
+def test_samples_that_come_twice_count_once() -> None:
+    readings = GAIT.readings(100)
+    found, texts = followed([r for reading in readings for r in (reading, reading)])
+    assert set(texts) == {"samples of this time were reported before"}
+    assert found == followed(readings)[0]
+    overlapping = [GAIT.imu(first, first + 300) for first in range(0, len(GAIT.t), 200)]
+    np.testing.assert_allclose(where(followed(overlapping)[0]), where(found), atol=0.1)
+
+
+@pytest.mark.parametrize("each", [10, 20, 200])
+@pytest.mark.parametrize("jitter_s", [0.002, 0.01])
+def test_epochs_of_a_gateway_that_jitter_cost_no_samples(each: int, jitter_s: float) -> None:
+    chance = np.random.default_rng(1)
+    late = [structs.replace(r, t=r.t + abs(float(chance.normal(0.0, jitter_s)))) for r in GAIT.readings(each)]
+    found, texts = followed(late)
+    assert texts == []
+    assert np.linalg.norm(where(found) - GAIT.place_m[-1]) < 0.4
+    assert found[-1].t == pytest.approx(GAIT.t[-1], abs=EACH_S + JITTER_MOST_S)
+
+
+def test_a_clock_that_runs_fast_is_followed() -> None:
+    """Who says 200 a second and sends 201 is half a hundredth ahead after each reading."""
+    fast = [structs.replace(r, t=50.0 + (r.t - 50.0) * 200.0 / 201.0) for r in GAIT.readings()]
+    found, _ = followed(fast)
+    assert np.linalg.norm(where(found) - GAIT.place_m[-1]) < 0.02 * 22.0
+    assert found[-1].t == pytest.approx(fast[-1].until_t, abs=EACH_S + JITTER_MOST_S)
+
+
+def unsure_m(found: Sequence[Displacement]) -> float:
+    return float(np.sqrt(sum((d.sigma_m or 0.0) ** 2 for d in found)))
+
+
+@pytest.mark.parametrize("lost", [2, 5, 10, 18])
+@pytest.mark.parametrize("at", [900, 930, 960])
+def test_a_few_lost_samples_are_told_by_what_they_may_have_been(lost: int, at: int) -> None:
+    gait = walked([Stride()] * 10)
+    found, _ = followed([gait.imu(0, at), gait.imu(at + lost, None)])
+    off_m = np.linalg.norm(where(found) - true_m(gait, found[-1].t))
+    assert off_m < 3.0 * unsure_m(found)
+    assert off_m < 0.5
+
+
+@pytest.mark.parametrize("lost", [24, 60, 400])
+def test_after_missing_samples_the_boot_is_levelled_anew_and_may_have_turned(lost: int) -> None:
+    gait = walked([Stride()] * 20)
+    assert lost * STEP_S > BRIDGED_S
+    known = None
+    for piece in pieces(gait.imu(0, 1600)):
+        known = navigate(known, piece, 0.0).navigation
+    first, *_ = pieces(gait.imu(1600 + lost, None))
+    done = navigate(known, first, 0.0)
+    assert done.turned_rad2 > (2.0 * lost * STEP_S) ** 2 or done.turned_rad2 > 1.0
+    assert done.displacements == []
+    assert known is not None
+    assert done.navigation.told_t >= (1600 + lost) * STEP_S - 1e-6
+
+
+def test_nothing_is_made_up_for_missing_samples() -> None:
+    gait = walked([Stride()] * 20)
+    found, _ = followed([gait.imu(0, 1600), gait.imu(2400, None)])
+    gap = next(i for i, (a, b) in enumerate(pairwise(found)) if b.from_t != a.t)
+    assert found[gap].t <= 1600 * STEP_S + 1e-6
+    assert found[gap + 1].from_t == pytest.approx(2400 * STEP_S + ALIGN_S)
+    missed = true_m(gait, found[gap + 1].from_t or 0.0) - true_m(gait, found[gap].t)
+    assert np.linalg.norm(where(found) + missed - gait.place_m[-1]) < 0.5
+
+
+@pytest.mark.parametrize("angle_rad", [-1.4, -1.5, 1.4, 1.65])
+@pytest.mark.parametrize("lost", [1580, 1640, 1700, 1750])
+def test_a_unit_whose_x_axis_points_up_goes_on_where_it_went(angle_rad: float, lost: int) -> None:
+    gait = walked([Stride()] * 20, mounted=Rotation.from_rotvec([0.0, angle_rad, 0.0]))
+    found, _ = followed([gait.imu(0, lost), gait.imu(lost + 100, None)])
+    before = np.array([d.delta_m for d in found if d.t < lost * STEP_S]).sum(axis=0)
+    after = np.array([d.delta_m for d in found if (d.from_t or 0.0) > lost * STEP_S + 1.0]).sum(axis=0)
+    assert np.dot(before, after) > 0.95 * np.linalg.norm(before) * np.linalg.norm(after)
+
+
+def test_who_is_carried_while_his_boot_stands_is_not_shown_where_he_stood_for_certain() -> None:
+    """He stands in a lift that starts: its floor is no ground."""
+    rests = walked([], rests_s=5.0)
+    force = rests.force.copy()
+    force[1000:1050, 2] += 2.0
+    carried = rests._replace(force=force)
+    still, _ = followed(rests.readings())
+    lifted, _ = followed(carried.readings())
+    assert unsure_m(still) < 0.1
+    assert unsure_m(lifted) > 0.2
+
+
+@pytest.mark.parametrize("scale", [0.0, 1.0 / 9.80665])
+def test_a_unit_that_feels_no_gravity_tells_nothing_and_says_so(scale: float) -> None:
+    found, texts = followed(GAIT._replace(force=scale * GAIT.force).readings())
+    assert found == []
+    assert "no gravity" in texts[0]
+
+
+@pytest.mark.parametrize("each", [10, 77, 400])
+def test_who_runs_is_followed_however_his_samples_are_cut(each: int) -> None:
+    gait = walked([Stride(length_m=2.6)] * 20)
+    found, texts = followed(gait.readings(each))
+    assert texts == []
+    assert np.linalg.norm(where(found)[:2] - gait.place_m[-1][:2]) < 0.05 * 52.0
+
+
+def test_long_readings_are_folded_in_pieces_of_half_a_second() -> None:
+    whole = GAIT.imu(0, 2100)
+    cut = list(pieces(whole))
+    assert [p.last for p in cut] == [False] * (len(cut) - 1) + [True]
+    assert all(p.until_t - p.t <= PIECE_S + 1e-9 for p in cut)
+    assert all(after.t == pytest.approx(before.until_t) for before, after in pairwise(cut))
+    assert np.array_equal(np.vstack([p.array for p in cut])[:, :3], np.array(whole.accel_mps2))
+
+
+def test_too_few_samples_a_second_are_refused() -> None:
+    slow = Imu(t=1.0, node="ff1", rate_hz=10.0, accel_mps2=[(0.0, 0.0, 9.8)], gyro_radps=[(0.0, 0.0, 0.0)])
+    found, texts = followed([slow])
+    assert found == []
+    assert "10 samples a second" in texts[0]
+    assert slow.until_t == 1.0
+
+
+def test_samples_that_lead_nowhere_are_told_and_navigation_goes_on_afterwards() -> None:
+    falls = Imu(
+        t=53.0,
+        node="ff1",
+        rate_hz=200.0,
+        accel_mps2=[(300.0, 0.0, 0.0)] * 200,
+        gyro_radps=[(900.0, 0.0, 0.0)] * 200,
+    )
+    rests = walked([], start_t=54.0)
+    found, texts = followed([GAIT.imu(0, 600), falls, *rests.readings()])
+    assert any("levelled anew" in text for text in texts)
+    assert np.isfinite([d.delta_m for d in found]).all()
+    assert np.linalg.norm(found[-1].delta_m) < 0.01
+
+
+def test_a_navigation_is_the_same_after_being_written_down() -> None:
+    before = None
+    for piece in pieces(GAIT.imu(0, 1000)):
+        before = navigate(before, piece, 0.0).navigation
+    assert before is not None
+    after = navigation_of(record_of(before))
+    more = next(pieces(GAIT.imu(1000, 2000)))
+    assert navigate(after, more, 0.0).displacements == navigate(before, more, 0.0).displacements

@@ -1,0 +1,46 @@
+"""How nearly a boot stands, by what it feels."""
+
+import numpy as np
+
+from estimator.inertial.stance import ALIKE_S, BEFORE, MOST_MPS, STEADY_MPS, felt_by, stance_sigma
+from tests.estimator.inertial.gait import STANCE_S, STEP_S, SWING_S, Stride, walked
+
+
+def sigmas(force: np.ndarray, rate: np.ndarray) -> np.ndarray:
+    felt, found = BEFORE.copy(), []
+    for one, other in zip(force, rate, strict=True):
+        felt_by(felt, one, other, np.zeros(3), 9.80665, STEP_S)
+        found.append(stance_sigma(felt, ALIKE_S))
+    return np.array(found)
+
+
+def test_a_boot_at_rest_stands_as_still_as_one_can() -> None:
+    gait = walked([])
+    assert sigmas(gait.force, gait.rate)[-1] < 1.1 * STEADY_MPS
+
+
+def test_a_boot_that_swings_tells_nothing_and_one_that_stands_does() -> None:
+    gait = walked([Stride()] * 10)
+    found = sigmas(gait.force, gait.rate)
+    speed = np.linalg.norm(np.diff(gait.place_m, axis=0, prepend=0.0), axis=1) / STEP_S
+    assert np.isinf(found[speed > 2.0 * MOST_MPS]).all()
+    stands = speed == 0.0
+    assert np.isfinite(found[stands]).mean() > 0.8
+    assert 0.8 < np.isfinite(found).sum() / stands.sum() < 1.1
+    assert stands.sum() * STEP_S > 10 * STANCE_S > 10 * SWING_S
+
+
+def test_what_its_speed_can_be_grows_with_what_it_turns_by() -> None:
+    rest = np.tile([0.0, 0.0, 9.80665], (100, 1))
+    told = [sigmas(rest, np.tile([turning, 0.0, 0.0], (100, 1)))[-1] for turning in (0.0, 0.1, 0.5, 1.0)]
+    assert told == sorted(told)
+    assert told[-1] > 5.0 * told[0]
+
+
+def test_standstills_near_to_each_other_count_once() -> None:
+    gait = walked([])
+    felt = BEFORE.copy()
+    for force, rate in zip(gait.force, gait.rate, strict=True):
+        felt_by(felt, force, rate, np.zeros(3), 9.80665, STEP_S)
+    assert np.isinf(stance_sigma(felt, 0.5 * ALIKE_S))
+    assert np.isfinite(stance_sigma(felt, ALIKE_S))
