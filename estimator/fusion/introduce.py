@@ -12,6 +12,7 @@ from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
 from estimator.fusion.swings import loose_headings, swung_m2
 from estimator.graph.dense import Array
+from estimator.measurements.bearing import within_pi
 from estimator.measurements.node import MOVING_ROLES, Node
 
 NO_PRIOR_SIGMA_M = 1e3
@@ -121,7 +122,7 @@ def attach_unit(state: FusionState, node: NodeState, unit_heading_rad: float | N
     turn = initial_turn(node.heading_rad, unit_heading_rad)
     if boot is not None:
         # Its frame is known: it is that in which it was told to begin.
-        turn = _within_pi((boot.began_rad if node.heading_rad is None else node.heading_rad) - boot.began_rad)
+        turn = within_pi((boot.began_rad if node.heading_rad is None else node.heading_rad) - boot.began_rad)
     sigma = (turn_sigma(node), state.bias_sigma_radps(node), physics.SCALE_SIGMA)
     state.graph.add_node(node.unit, (turn, 0.0, 0.0), sigma)
     uav = float(node.role == "uav")
@@ -147,16 +148,12 @@ def initial_turn(node_heading_rad: float | None, unit_heading_rad: float | None)
     if node_heading_rad is None:
         return 0.0
     if unit_heading_rad is None:
-        return _within_pi(node_heading_rad)
-    faced = _within_pi(node_heading_rad - unit_heading_rad)
-    axis = _within_pi(node_heading_rad)
-    if abs(_within_pi(faced - axis)) <= min(abs(faced), abs(axis)):
+        return within_pi(node_heading_rad)
+    faced = within_pi(node_heading_rad - unit_heading_rad)
+    axis = within_pi(node_heading_rad)
+    if abs(within_pi(faced - axis)) <= min(abs(faced), abs(axis)):
         return axis
     return 0.0
-
-
-def _within_pi(angle_rad: float) -> float:
-    return float((angle_rad + np.pi) % (2.0 * np.pi) - np.pi)
 
 
 def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float) -> bool:

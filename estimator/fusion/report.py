@@ -9,6 +9,7 @@ from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
 from estimator.fusion.swings import loose_headings, swung_m2
 from estimator.graph.dense import Array
+from estimator.measurements.bearing import within_pi
 
 AXES = np.arange(3)
 UPPER = np.triu_indices(3)
@@ -74,10 +75,10 @@ def _heading(state: FusionState, node: NodeState, covariance: Array) -> tuple[fl
         start = state.graph.rows(node.unit).start
         psi, sigma = float(state.graph.reference[start]), float(np.sqrt(covariance[start, start]))
         if node.unit_heading_rad is not None:
-            return _within_pi(node.unit_heading_rad + psi), sigma
+            return within_pi(node.unit_heading_rad + psi), sigma
         if len(node.trail) > 1 and (node.speed_mps or 0.0) > MOVING_MPS:
             _, e, n, _ = (np.array(node.trail[-1]) - np.array(node.trail[-2])).tolist()
-            return _within_pi(float(np.arctan2(n, e)) + psi), float(np.hypot(sigma, 0.1))
+            return within_pi(float(np.arctan2(n, e)) + psi), float(np.hypot(sigma, 0.1))
     if node.mode == "free" and (node.speed_mps or 0.0) > MOVING_MPS:
         rows = state.graph.rows(node.velocity)
         east, north, _ = state.graph.value(node.velocity).tolist()
@@ -114,7 +115,3 @@ def relative(state: FusionState, covariance: Array, a: str, b: str) -> Relative 
     held = [node.otherwise if node.place_m is None else () for node in ends]
     total += doubt_between_m2(held[0], places[0][:2], held[1], places[1][:2])
     return Relative(delta_m=tuple_of(places[1] - places[0]), covariance_m2=upper_triangle(total))
-
-
-def _within_pi(angle_rad: float) -> float:
-    return float((angle_rad + np.pi) % (2.0 * np.pi) - np.pi)

@@ -37,8 +37,8 @@ def update(state: FusionState, table: Array) -> None:
     state.bent_m += bend_m(graph, found.x - graph.reference)
     graph.settle(found.matrix, found.x)
     # Who passes a kicked breadcrumb is held back by it: its window is not to wait.
-    refused = (found.good < SAME_PLACE) & (table[:, KIND] == RANGE)
-    state.suspected = state.suspected or (found.doubted and bool(refused.any()))
+    if found.doubted and ((found.good < SAME_PLACE) & (table[:, KIND] == RANGE)).any():
+        state.suspected = True
     _learn(state, table, found)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.base import Identifier, Reading
-from estimator.measurements.imu import RATE_MIN_HZ, Imu
+from estimator.measurements.imu import RATE_MIN_HZ, Imu, end_of
 
 PIECE_S = 0.5
 
@@ -34,7 +34,7 @@ class Samples(Reading, tag="samples", frozen=True):
     @property
     def until_t(self) -> float:
         """When its last sample ends, Unix seconds; `t`, where there are too few of them to be summed up."""
-        return self.t + self.count / self.rate_hz if self.rate_hz >= RATE_MIN_HZ else self.t
+        return end_of(self.t, self.count, self.rate_hz)
 
     @property
     def array(self) -> Array:

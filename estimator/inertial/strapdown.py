@@ -70,9 +70,9 @@ class Strapdown(NamedTuple):
     @classmethod
     def new(cls, heading_rad: float) -> Self:
         """One that nothing is known of yet, but what its x axis faces."""
-        nothing, upright = np.zeros(3), np.array([0.0, 0.0, 1.0])
+        nothing = np.zeros(3)
         return cls(
-            level(upright, 0, heading_rad),
+            np.eye(3),
             nothing,
             nothing.copy(),
             np.zeros((ERRORS, ERRORS)),

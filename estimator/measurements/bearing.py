@@ -68,3 +68,8 @@ def predict_bearing(a: Array, b: Array, heading_rad: Array) -> PairJacobian:
 def wrap(angle_rad: Array) -> Array:
     """The same angles within −π to π."""
     return np.remainder(angle_rad + np.pi, 2.0 * np.pi) - np.pi
+
+
+def within_pi(angle_rad: float) -> float:
+    """One angle in [−π, π) (rad)."""
+    return float((angle_rad + np.pi) % (2.0 * np.pi) - np.pi)

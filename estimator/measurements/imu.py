@@ -37,7 +37,7 @@ class Imu(Reading, tag="imu", frozen=True):
     @property
     def until_t(self) -> float:
         """When its last sample ends, Unix seconds; `t`, where there are too few of them to be summed up."""
-        return self.t + len(self.accel_mps2) / self.rate_hz if self.rate_hz >= RATE_MIN_HZ else self.t
+        return end_of(self.t, len(self.accel_mps2), self.rate_hz)
 
     def __post_init__(self) -> None:
         """Refuse sample arrays of different lengths.
@@ -48,3 +48,8 @@ class Imu(Reading, tag="imu", frozen=True):
         n = len(self.accel_mps2)
         if len(self.gyro_radps) != n or (self.mag_ut is not None and len(self.mag_ut) != n):
             raise ValueError("`accel_mps2`, `gyro_radps` and `mag_ut` must have as many samples each")
+
+
+def end_of(t: float, count: int, rate_hz: float) -> float:
+    """When samples end that begin at `t`; `t`, where there are too few of them to be summed up (s)."""
+    return t + count / rate_hz if rate_hz >= RATE_MIN_HZ else t

@@ -10,7 +10,6 @@ from estimator.smoothing.layout import Layout
 from estimator.smoothing.otherwise import Mode
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
-from estimator.smoothing.walks import STATES
 
 CLEARER = 0.3
 """Who is shown at one place is shown at another one when that is likelier by this much (log likelihood)."""
@@ -73,9 +72,8 @@ def _after(mode: Mode, back: Mapping[int, Image]) -> Mode:
 def _moved(layout: Layout, x: Array, images: Mapping[int, Image]) -> Array:
     """An estimate with nodes at images of where they are, flat."""
     there, size = x.copy(), layout.length * layout.width
-    keyframes = there[:size].reshape(layout.length, layout.width)
     for i, walk in enumerate(layout.walks):
-        image, states = images.get(walk.number), keyframes[:, STATES * i : STATES * (i + 1)]
+        image, states = images.get(walk.number), layout.states(there, i)
         if image is not None and walk.way is None:
             image.move(states)
         elif image is not None:

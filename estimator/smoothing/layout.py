@@ -141,6 +141,11 @@ class Layout:
                 border[at : at + 2] = self.state.graph.value(variable)
         return x
 
+    def states(self, x: Array, index: int) -> Array:
+        """A walk's states at all keyframes in an estimate, k × 6: a view, by which it may be changed."""
+        keyframes = x[: self.length * self.width].reshape(self.length, self.width)
+        return keyframes[:, STATES * index : STATES * (index + 1)]
+
 
 def technology_key(state: FusionState, variable: Variable) -> Key:
     """The block of a technology's states, by number of its source."""

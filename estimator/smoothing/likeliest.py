@@ -18,7 +18,6 @@ from estimator.smoothing.otherwise import Mode, same_place
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
 from estimator.smoothing.turns import reports_from, turn, turns
-from estimator.smoothing.walks import STATES
 
 LEAST_TRIED, WAYS = 2, 3
 """So many images of each way are solved at least; beyond so many ways it is fewer for each."""
@@ -27,6 +26,7 @@ SOON = 4
 FAR, HOPELESS = 600.0, 50.0
 """What an image costs more, in log likelihood, that is not solved at all, and that is given up."""
 SAME_RAD = 0.4
+"""Headings nearer to each other than this are one, and not at rest yet."""
 BEGINNINGS = 3
 """Images of a way that put somebody at the same place now, from keyframes this near, are the same."""
 
@@ -109,7 +109,7 @@ def _judged(problem: Problem, solved: Solved, index: int, effort: Effort) -> tup
     walk, now = layout.walks[index], float(layout.grid[-1])
     problem.rows.widen(solved.x, solved.linear.jacobian)
     loose, heard = loose_steps(problem, solved, index), heard_by(problem, solved, walk)
-    way_m = _way(layout, solved.x, index)[:, :2]
+    way_m = layout.states(solved.x, index)[:, :2]
     found = flips(heard, way_m, walk, loose, now, effort) if loose.any() else []
     if walk.node.turned:
         found += turns(heard, way_m, walk, reports_from(layout, index))
@@ -120,20 +120,14 @@ def _judged(problem: Problem, solved: Solved, index: int, effort: Effort) -> tup
     return best.solved, modes, last and exposed(heard, now)
 
 
-def _way(layout: Layout, x: Array, index: int) -> Array:
-    """A walk's states at all keyframes, k × 6; a view."""
-    keyframes = x[: layout.length * layout.width].reshape(layout.length, layout.width)
-    return keyframes[:, STATES * index : STATES * (index + 1)]
-
-
 def _flipped(layout: Layout, x: Array, index: int, loose: NDArray[np.bool_], flip: Flip) -> Array:
     """An estimate with a way where an image has it, flat; what a unit has reported goes along as it is."""
     there, walk = x.copy(), layout.walks[index]
     if flip.image.turned_rad != 0.0:
-        turn(layout, there, walk, _way(layout, there, index), flip)
+        turn(layout, there, index, flip)
         return there
     end = end_of(flip, loose) - flip.since
-    states = _way(layout, there, index)[flip.since : walk.last + 1]
+    states = layout.states(there, index)[flip.since : walk.last + 1]
     if walk.way is None:
         flip.image.move(states[: end + 1])
         return there
@@ -177,7 +171,7 @@ def _solutions(
     asked = slice(walk.first if effort.whole else walk.last, walk.last + 1)
 
     def tried_of(one: Solved, flip: Flip) -> _Tried:
-        way = _way(layout, one.x, index)
+        way = layout.states(one.x, index)
         turned = walk.node.turned and (flip.image.turned_rad != 0.0 or one is solved)
         return _Tried(one, way[asked, :2], float(way[walk.last, 3]) if turned else None, flip)
 
@@ -185,7 +179,7 @@ def _solutions(
     tried: list[tuple[int, Array]] = []
     for flip in begun:
         x = _flipped(layout, solved.x, index, loose, flip)
-        start_m = _way(layout, x, index)[asked, :2].copy()
+        start_m = layout.states(x, index)[asked, :2].copy()
         if any(abs(flip.since - k) < BEGINNINGS and same_place(start_m, at) for k, at in tried):
             continue
         if len(tried) == effort.tried:

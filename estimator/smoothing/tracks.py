@@ -10,7 +10,7 @@ from estimator.fusion.free import free_motion
 from estimator.fusion.introduce import tuple_of, upper_triangle
 from estimator.graph.dense import Array
 from estimator.smoothing.layout import Layout, Walk
-from estimator.smoothing.walks import STATES, led_by
+from estimator.smoothing.walks import led_by
 
 Lifetimes = Mapping[str, tuple[float, float]]
 
@@ -101,8 +101,7 @@ def _walked(
     seconds = seconds[seconds >= times[walk.first] - 1e-6]
     if len(seconds) == 0:
         return []
-    own = slice(STATES * index, STATES * (index + 1))
-    states = x[: layout.length * layout.width].reshape(layout.length, layout.width)[:, own]
+    states = layout.states(x, index)
     at = np.clip(np.searchsorted(layout.grid, seconds, side="right") - 1, walk.first, walk.last)
     after = np.minimum(at + 1, walk.last)
     since, until = times[at], np.maximum(times[after], seconds)

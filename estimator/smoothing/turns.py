@@ -5,13 +5,15 @@ the way turned to the other side fits as well, until he turns or another radio h
 """
 
 import numpy as np
+from msgspec.structs import replace
 
+from estimator.fusion import physics
 from estimator.fusion.images import Image, turned_about
 from estimator.graph.dense import Array
+from estimator.measurements.bearing import within_pi
 from estimator.smoothing.flips import Flip, Heard, radios_of
 from estimator.smoothing.layout import Layout, Walk
 
-TURNS = 8
 SAME_S = 1e-6
 
 
@@ -44,7 +46,7 @@ def turns(heard: Heard, way_m: Array, walk: Walk, since: int) -> list[Flip]:
         return []
     start_m = way_m[since]
     led = way_m[walk.last] - start_m
-    angles = [2.0 * np.pi * j / TURNS for j in range(1, TURNS)]
+    angles = all_round()
     for radio_m in radios:
         towards = radio_m - start_m
         mirror = 2.0 * (np.arctan2(towards[1], towards[0]) - np.arctan2(led[1], led[0]))
@@ -52,17 +54,17 @@ def turns(heard: Heard, way_m: Array, walk: Walk, since: int) -> list[Flip]:
     return [Flip(since, facing(start_m, angle)) for angle in angles]
 
 
-def turn(layout: Layout, x: Array, walk: Walk, states: Array, flip: Flip) -> None:
+def turn(layout: Layout, x: Array, index: int, flip: Flip) -> None:
     """Turn a unit's whole way in an estimate, and what its bearer has dropped along with it.
 
     Args:
         layout: of the window.
         x: the estimate, flat; changed in place.
-        walk: the walk.
-        states: its states at all keyframes, k × 6; a view of `x`.
+        index: of the walk.
         flip: the turn, and since when it is one.
     """
-    image, here = flip.image, states[flip.since : walk.last + 1]
+    walk, states, image = layout.walks[index], layout.states(x, index), flip.image
+    here = states[flip.since : walk.last + 1]
     here[:, :2] = image.of(here[:, :2])
     states[walk.first : walk.last + 1, 3] += image.turned_rad
     drops, size = layout.state.ledger.table("drops"), layout.length * layout.width
@@ -73,8 +75,12 @@ def turn(layout: Layout, x: Array, walk: Walk, states: Array, flip: Flip) -> Non
             x[start : start + 2] = image.of(x[start : start + 2])
 
 
+def all_round() -> list[float]:
+    """Turns to be tried where a unit may face anything (rad)."""
+    return [2.0 * np.pi * j / physics.TURNS for j in range(1, physics.TURNS)]
+
+
 def facing(centre_m: Array, by_rad: float) -> Image:
     """A turn to the left about a place, with which what a unit faces turns along."""
     image = turned_about(centre_m, by_rad)
-    within = float((by_rad + np.pi) % (2.0 * np.pi) - np.pi)
-    return Image(image.cosine, image.sine, image.flip, image.east_m, image.north_m, within)
+    return replace(image, turned_rad=within_pi(by_rad))

@@ -9,7 +9,6 @@ no reading inside the window stays linearised at an estimate that has turned out
 import numpy as np
 from msgspec.structs import replace
 
-from estimator.fusion import physics
 from estimator.fusion.beginnings import decide
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
@@ -25,6 +24,7 @@ from estimator.smoothing.extent import (
     trim,
     work,
 )
+from estimator.smoothing.flips import Flip
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.learn import learn
 from estimator.smoothing.likeliest import likeliest
@@ -35,8 +35,7 @@ from estimator.smoothing.settle import keep_keyframes, settle
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
 from estimator.smoothing.turned import turned
-from estimator.smoothing.turns import reports_from
-from estimator.smoothing.walks import STATES
+from estimator.smoothing.turns import all_round, facing, reports_from, turn
 
 PERIOD_S = 8.0
 SOONEST_S = 3.0
@@ -169,23 +168,16 @@ def _best(problem: Problem, x: Array) -> Solved:
     free = any(walk.way is None for walk in layout.walks)
     slacks = SLACKS_M if free else ()
     best = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING)
-    size = layout.length * layout.width
     for i, walk in enumerate(layout.walks):
         if not layout.state.nodes[walk.node.node].turned:
             continue
-        since, column = reports_from(layout, i), STATES * i
-        alive = slice(since, walk.last + 1)
-        for turn in np.arange(1, physics.TURNS) * (2.0 * np.pi / physics.TURNS):
+        since = reports_from(layout, i)
+        for angle in all_round():
             there = best.x.copy()
-            keyframes = there[:size].reshape(layout.length, layout.width)
-            places = keyframes[alive, column : column + 2]
+            places = layout.states(there, i)[since : walk.last + 1, :2]
             # Where a unit is switched on later, its bearer was already there.
             middle = places.mean(axis=0) if since == walk.first else places[0]
-            cosine, sine = np.cos(turn), np.sin(turn)
-            keyframes[alive, column : column + 2] = middle + (places - middle) @ np.array(
-                [[cosine, sine], [-sine, cosine]]
-            )
-            keyframes[walk.first : walk.last + 1, column + 3] += turn
+            turn(layout, there, i, Flip(since, facing(middle, angle)))
             tried = problem.solve(there, SLACKS_M, TURN_ITERATIONS)
             if tried.cost < best.cost - 1e-3:
                 best = tried

@@ -90,6 +90,15 @@ def rows(path: Path) -> Iterator[dict[str, str]]:
         yield from csv.DictReader(file)
 
 
+def numbers(path: Path) -> list[dict[str, float]]:
+    """The rows of a CSV file with a header and nothing but numbers.
+
+    Raises:
+        NotTheDataSet: there is no such file.
+    """
+    return [{name: float(word) for name, word in row.items()} for row in rows(path)]
+
+
 def words(path: Path) -> Iterator[list[str]]:
     """The words of each line of a text file.
 

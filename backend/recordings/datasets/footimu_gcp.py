@@ -8,7 +8,7 @@ import math
 from itertools import pairwise
 from pathlib import Path
 
-from backend.recordings.datasets.base import KNOWN_SIGMA_M, NotTheDataSet, Vector3, rows, samples
+from backend.recordings.datasets.base import KNOWN_SIGMA_M, NotTheDataSet, Vector3, numbers, samples
 from estimator.measurements import AnyReading, Node, Position
 
 NAME = "footimu_gcp"
@@ -35,7 +35,7 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
         NotTheDataSet: the file is missing.
     """
     del recording
-    table = _table(folder)
+    table = numbers(folder / f"{TRIAL}.csv")
     stood_t, east, north = tiles(folder)[GIVEN]
     fix = Position(t=stood_t, node=BOOT, position_m=(east, north, 0.0), sigma_m=(KNOWN_SIGMA_M,) * 3)
     begins = Node(
@@ -59,15 +59,11 @@ def tiles(folder: Path) -> list[Vector3]:
     Raises:
         NotTheDataSet: a file is missing, or it stood as often as no tiles are given for.
     """
-    places = [(float(row["x_m"]), float(row["y_m"])) for row in rows(folder / f"{TRIAL}_gcp.csv")]
-    stood = _standstills(_table(folder))
+    places = [(row["x_m"], row["y_m"]) for row in numbers(folder / f"{TRIAL}_gcp.csv")]
+    stood = _standstills(numbers(folder / f"{TRIAL}.csv"))
     if len(stood) != len(places):
         raise NotTheDataSet(f"{folder}: the boot stood {len(stood)} times, and {len(places)} tiles are given")
     return [(t, *place) for t, place in zip(stood, places, strict=True)]
-
-
-def _table(folder: Path) -> list[dict[str, float]]:
-    return [{name: float(word) for name, word in row.items()} for row in rows(folder / f"{TRIAL}.csv")]
 
 
 def _standstills(table: list[dict[str, float]]) -> list[float]:

@@ -8,7 +8,7 @@ seen from above, y is to the right of x.
 import math
 from pathlib import Path
 
-from backend.recordings.datasets.base import KNOWN_SIGMA_M, Vector3, rows, samples
+from backend.recordings.datasets.base import KNOWN_SIGMA_M, Vector3, numbers, samples
 from estimator.measurements import AnyReading, Node, Position
 
 NAME = "footimu_vicon"
@@ -50,7 +50,7 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
 
 def walked(folder: Path, recording: str) -> list[dict[str, float]]:
     """The rows of a walk."""
-    return [{name: float(word) for name, word in row.items()} for row in rows(folder / f"{recording}.csv")]
+    return numbers(folder / f"{recording}.csv")
 
 
 def place_of(row: dict[str, float]) -> Vector3:

@@ -16,6 +16,7 @@ from estimator.measurements.retire import Retire
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.ellipses import INSIDE, outside
 from tests.estimator.inertial.gait import AROUND, STEP_S, Gait, Stride, walked
 
 START_T = 1000.0
@@ -124,11 +125,7 @@ def test_while_samples_are_missing_he_may_have_turned(heard_each_s: float | None
     assert unsure.heading_sigma_rad is not None
     # What is heard afterwards tells some of it again.
     assert sure.heading_sigma_rad < 0.2 < (0.5 if heard_each_s is None else 0.25) < unsure.heading_sigma_rad
-    assert unsure.position_m is not None
-    assert unsure.covariance_m2 is not None
-    ee, en, _, nn, _, _ = unsure.covariance_m2
-    off = np.array(unsure.position_m) - truth_m(gait, unsure.t)
-    assert off[:2] @ np.linalg.solve([[ee, en], [en, nn]], off[:2]) < 5.99
+    assert outside(unsure.position_m, unsure.covariance_m2, truth_m(gait, unsure.t)) < INSIDE
 
 
 @pytest.mark.parametrize("each", [10, 200, 1000, 2200])

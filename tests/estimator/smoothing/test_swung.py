@@ -5,44 +5,22 @@ import math
 import numpy as np
 import pytest
 
-from estimator.estimate import TrackPoint
 from estimator.measurements import AnyReading
-from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop
-from estimator.measurements.node import Node
 from estimator.measurements.rssi import Rssi
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import BatchSmoother
-
-INSIDE = 5.99
-WAY_M = 20.0
+from tests.estimator.ellipses import INSIDE, outside
+from tests.estimator.fusion.test_swings import WAY_M, ahead
 
 
 def incident(heading_sigma_rad: float) -> list[AnyReading]:
     """Who walks 20 m straight ahead, drops a breadcrumb halfway, and hears it go."""
-    readings: list[AnyReading] = [
-        Node(
-            t=0.0,
-            node="ff1",
-            role="responder",
-            position_m=(0.0, 0.0, 0.0),
-            sigma_m=0.1,
-            heading_sigma_rad=heading_sigma_rad,
-        ),
-        Drop(t=WAY_M / 2.0, node="b1", by="ff1"),
+    heard = [
+        Rssi(t=t, a="ff1", b="b1", dbm=-45.0 - 22.0 * math.log10(t - WAY_M / 2.0))
+        for t in np.arange(WAY_M / 2.0 + 3.0, WAY_M + 1.0).tolist()
     ]
-    for t in np.arange(1.0, WAY_M + 1.0).tolist():
-        readings.append(Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=(1.0, 0.0, 0.0)))
-        if t > WAY_M / 2.0 + 2.0:
-            dbm = -45.0 - 22.0 * math.log10(t - WAY_M / 2.0)
-            readings.append(Rssi(t=t, a="ff1", b="b1", dbm=dbm))
-    return readings
-
-
-def outside(point: TrackPoint, place_m: tuple[float, float]) -> float:
-    ee, en, _, nn, _, _ = point.covariance_m2
-    off = np.array(point.position_m[:2]) - place_m
-    return float(off @ np.linalg.solve([[ee, en], [en, nn]], off))
+    return ahead(heading_sigma_rad, (Drop(t=WAY_M / 2.0, node="b1", by="ff1"), *heard))
 
 
 @pytest.mark.parametrize("turned_rad", [0.0, 1.0, 2.0, 3.0])
@@ -50,9 +28,9 @@ def test_what_he_has_dropped_may_be_anywhere_around_as_he_may(turned_rad: float)
     tracks = BatchSmoother(TrackerSettings()).smooth(incident(math.pi))
     facing = np.array([np.cos(turned_rad), np.sin(turned_rad)])
     for point in tracks["ff1"]:
-        assert outside(point, tuple((point.t * facing).tolist())) < INSIDE
+        assert outside(point.position_m, point.covariance_m2, point.t * facing) < INSIDE
     for point in tracks["b1"]:
-        assert outside(point, tuple((WAY_M / 2.0 * facing).tolist())) < INSIDE
+        assert outside(point.position_m, point.covariance_m2, WAY_M / 2.0 * facing) < INSIDE
 
 
 @pytest.mark.parametrize("node", ["ff1", "b1"])
