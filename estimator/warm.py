@@ -5,6 +5,7 @@ import numpy as np
 from estimator.fusion.descent import descend
 from estimator.fusion.free import free_motion
 from estimator.fusion.modes import Sought, find_modes
+from estimator.fusion.motion import walked
 from estimator.fusion.noise import single_sigmas
 from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.rows import FIELDS, ONE
@@ -19,7 +20,6 @@ from estimator.graph.scatter import add_motion, couple, localise, scatter_rows
 from estimator.graph.variable import Variable
 from estimator.inertial.strapdown import Strapdown, advance
 from estimator.measurements.bearing import predict_bearing, wrap
-from estimator.measurements.displacement import move
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.bent import add_bends
@@ -27,6 +27,7 @@ from estimator.smoothing.chosen import choose
 from estimator.smoothing.ends import Nodes, Table, place_ends, stand
 from estimator.smoothing.learn import noise_scores
 from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals
+from estimator.smoothing.moved import disagreeing
 from estimator.smoothing.obstructed import excess
 from estimator.smoothing.slips import gains, unsure
 from estimator.smoothing.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
@@ -92,6 +93,7 @@ def _warm_chain() -> None:
     add_unsure(jacobians(readings, x), place, place, place, place, np.ones(5))
     apart(readings, x)
     excess(slab, one, one)
+    disagreeing(one, 0.0)
     single_sigmas(one, one, one)
     add_bends(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
 
@@ -104,7 +106,7 @@ def _warm_filter() -> None:
     graph.advance(rows, graph.reference[rows], straight, straight)
     graph.add_measurements(rows, np.ones((1, 3)), np.ones(1), np.zeros(1))
     inverse(factorise(graph.information))
-    move(np.zeros((1, 6)), np.zeros((1, 3)), np.ones(1))
+    walked(np.zeros((1, 12)), graph.reference)
     wandered_m2(1.0, 0.0)
     free_motion("responder", 1.0)
     table = np.full((1, FIELDS), 0.5)

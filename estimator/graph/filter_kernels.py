@@ -119,6 +119,19 @@ def scatter(
 
 
 @njit(cache=True, error_model="numpy")
+def advance(
+    matrix: Array, vector: Array, n: int, rows: Indices, transition: Array, noise: Array
+) -> tuple[bool, Array]:
+    """`Kirchhoff.advance`, but for the reference: see `carry` and `loosen`.
+
+    Returns:
+        False where Q⁻¹ + Eᵀ A E is not positive definite: the second half is still to be done; and that.
+    """
+    kernel = carry(matrix, vector, n, rows, transition, noise)
+    return loosen(matrix, vector, n, rows.ravel(), kernel), kernel
+
+
+@njit(cache=True, error_model="numpy")
 def carry(matrix: Array, vector: Array, n: int, rows: Indices, transition: Array, noise: Array) -> Array:
     """First half of `Kirchhoff.advance`: put A = F⁻ᵀ L F⁻¹ and F⁻ᵀ b in the place of L and b.
 

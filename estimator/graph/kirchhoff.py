@@ -11,7 +11,7 @@ from typing import Self
 import numpy as np
 
 from estimator.graph.dense import Array, Cholesky, Indices, factorise, inverse, mended, solve
-from estimator.graph.filter_kernels import carry, loosen, scatter
+from estimator.graph.filter_kernels import advance, loosen, scatter
 from estimator.graph.variable import DIMENSION, Variable
 
 
@@ -83,8 +83,10 @@ class Kirchhoff:
 
     def copy(self) -> Self:
         """An independent copy."""
-        twin = self.of((), self._matrix.copy(), self._vector.copy(), self._reference.copy())
+        twin = object.__new__(type(self))
         twin.starts, twin.size = dict(self.starts), self.size
+        twin._matrix, twin._vector = self._matrix.copy(), self._vector.copy()
+        twin._reference = self._reference.copy()
         return twin
 
     def add_node(
@@ -171,9 +173,9 @@ class Kirchhoff:
             transition: F of each, g × d × d.
             noise: covariance Q of w of each, g × d × d, positive definite.
         """
-        kernel = carry(self._matrix, self._vector, self.size, rows, transition, noise)
+        done, kernel = advance(self._matrix, self._vector, self.size, rows, transition, noise)
         flat = rows.ravel()
-        if not loosen(self._matrix, self._vector, self.size, flat, kernel):
+        if not done:
             loosen(self._matrix, self._vector, self.size, flat, mended(kernel))
         self._reference[flat] = moved.ravel()
 

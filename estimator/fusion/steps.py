@@ -1,0 +1,167 @@
+"""What the displacements of one unit add up to within a tick."""
+
+import math
+from typing import NamedTuple
+
+from msgspec.structs import replace
+
+from estimator.estimate import Vector3
+from estimator.fusion import physics
+from estimator.fusion.nodes import NodeState
+from estimator.fusion.rows import Single
+from estimator.fusion.silence import LONGEST_S
+from estimator.fusion.standing import stand_on
+from estimator.fusion.way import Mark
+from estimator.measurements.displacement import Displacement
+
+TRAIL_S = 4.0
+FIRST_DURATION_S = 1.0
+WALK_M2_PER_M, STAND_M2_PER_S = physics.WALK_M_PER_ROOT_M**2, physics.STAND_M_PER_ROOT_S**2
+FLOOR_M2 = physics.DISPLACEMENT_FLOOR_M**2
+TURN_RAD2_PER_M = physics.HEADING_WALK_RAD_PER_ROOT_M**2
+TURN_RAD2_PER_S = physics.GYRO_WALK_RAD_PER_ROOT_S**2
+BIAS_PER_S, SCALE_PER_S = physics.BIAS_WALK_RADPS_PER_ROOT_S**2, physics.SCALE_WALK_PER_ROOT_S**2
+Noise = tuple[float, float, float, float, float, float]
+"""Variances of east, north, up (m²), ψ (rad²), β (rad²/s²) and s."""
+NOTHING = (0.0,) * 6
+
+
+class Increment(NamedTuple):
+    """What one displacement adds to a unit's way.
+
+    Attributes:
+        since_t: epoch that the unit's position referred to before it (s).
+        delta_m: displacement in the unit's frame (m).
+        noise: variances that it adds.
+        turn: the gyro bias that is told by a standstill, if one has ended or lasted long (ZARU).
+        too_fast: nobody moves so far in its time.
+    """
+
+    since_t: float
+    delta_m: Vector3
+    noise: Noise
+    turn: Single | None
+    too_fast: bool
+
+
+class Step:
+    """What one unit has moved in one tick: it takes one displacement after the other.
+
+    Attributes:
+        node: the unit, before the step.
+        delta_m: displacement in the unit's frame (m).
+        duration_s: time that it took (s).
+        noise: variances that it adds.
+        taken: it has taken any.
+    """
+
+    def __init__(self, node: NodeState) -> None:
+        self.node = node
+        self.delta_m: Vector3 = (0.0, 0.0, 0.0)
+        self.duration_s = 0.0
+        self.noise: Noise = NOTHING
+        self._pose_t, self._unit_t = node.pose_t, node.unit_t
+        self._heading_rad, self._speed_mps = node.unit_heading_rad, node.speed_mps
+        self._still, self._way_m = node.still, node.way_m
+        self._marks: list[Mark] = list(node.trail or ((node.pose_t, 0.0, 0.0, 0.0),))
+        self.taken = False
+
+    def take(self, reading: Displacement) -> Increment | None:
+        """Hold a displacement against what its unit reported before; None where that covers its epoch."""
+        t, pose_t, unit_t = reading.t, self._pose_t, self._unit_t
+        if t < pose_t or (unit_t is not None and t <= unit_t):
+            return None
+        start = start_of(reading, pose_t if unit_t is None else unit_t)
+        e, n, u = reading.delta_m
+        duration = min(t - pose_t, LONGEST_S)
+        own = max(t - start, 0.0)
+        length = math.sqrt(e * e + n * n + u * u)
+        across = up = 0.0
+        if start < pose_t and unit_t is not None:
+            share = duration / own
+            across = up = (0.5 * share * (1.0 - share) * length) ** 2
+            e, n, u, length, own = e * share, n * share, u * share, length * share, duration
+        elif start > pose_t:
+            across = (physics.GAP_MPS * min(start - pose_t, LONGEST_S)) ** 2
+            up = 0.1 * across
+        too_fast = length > physics.FASTEST_MPS * max(own, physics.TICK_S)
+        if too_fast:
+            across, up = across + length**2, up + length**2
+        still = own > 0.0 and length < physics.STILL_MPS * own and start <= pose_t
+        turn = self._stand(reading, still)
+        up += (physics.SCALE_SIGMA * u) ** 2
+        noise = walk_noise((across, across, up), reading.sigma_m, length, duration)
+        if own > 0.0:
+            self._speed_mps = math.hypot(e, n) / own
+        self._pose_t = self._unit_t = t
+        self._heading_rad, self.taken = reading.heading_rad, True
+        self._way_m += length
+        _, last_e, last_n, last_u = self._marks[-1]
+        self._marks.append((t, last_e + e, last_n + n, last_u + u))
+        before_e, before_n, before_u = self.delta_m
+        self.delta_m = before_e + e, before_n + n, before_u + u
+        self.duration_s += duration
+        self.noise = sum_of(self.noise, noise)
+        return Increment(pose_t, (e, n, u), noise, turn, too_fast)
+
+    def _stand(self, reading: Displacement, still: bool) -> Single | None:
+        """Go on standing, or stop; the gyro bias that this tells."""
+        stood, told = None, None
+        if still and reading.heading_rad is not None:
+            stood, told = stand_on(self._still, reading.t, reading.heading_rad)
+        elif still:
+            stood = self._still
+        elif self._still is not None:
+            told = self._still.bias()
+        self._still = stood
+        return None if told is None else Single(self.node.unit, 1, told.value, told.sigma, physics.TURN_NOISE)
+
+    def after(self) -> NodeState:
+        """The unit after the step."""
+        node, marks, t = self.node, self._marks, self._pose_t
+        if not self.taken:
+            return node
+        oldest, last = 0, len(marks) - 1
+        while oldest < last and marks[oldest][0] < t - TRAIL_S:
+            oldest += 1
+        return replace(
+            node,
+            t=max(node.t, t),
+            pose_t=t,
+            unit_t=t,
+            unit_heading_rad=self._heading_rad,
+            speed_mps=self._speed_mps,
+            trail=tuple(marks[max(oldest - 1, 0) :]),
+            still=self._still,
+            way_m=self._way_m,
+        )
+
+
+def walk_noise(known: Vector3, sigma_m: float | None, length: float, duration: float) -> Noise:
+    """Variances of a displacement.
+
+    Args:
+        known: what else its place is unsure by: of east, north, up (m²).
+        sigma_m: standard deviation that its unit tells, if it does (m).
+        length: of it (m).
+        duration: of it (s).
+    """
+    e, n, u = known
+    step = WALK_M2_PER_M * length if sigma_m is None else sigma_m**2
+    position = step + STAND_M2_PER_S * duration + FLOOR_M2
+    heading = TURN_RAD2_PER_M * length + TURN_RAD2_PER_S * duration
+    return e + position, n + position, u + position, heading, BIAS_PER_S * duration, SCALE_PER_S * duration
+
+
+def start_of(reading: Displacement, pose_t: float | None) -> float:
+    """Epoch at which a displacement begins; `pose_t`: where it does not tell; None: nothing was before."""
+    if reading.from_t is not None:
+        return reading.from_t
+    return reading.t - FIRST_DURATION_S if pose_t is None else pose_t
+
+
+def sum_of(one: Noise, other: Noise) -> Noise:
+    """The variances of two displacements, one after the other."""
+    e, n, u, psi, beta, scale = one
+    more_e, more_n, more_u, more_psi, more_beta, more_scale = other
+    return e + more_e, n + more_n, u + more_u, psi + more_psi, beta + more_beta, scale + more_scale
