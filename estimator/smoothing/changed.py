@@ -29,10 +29,12 @@ class Changed(NamedTuple):
 def changed_links(problem: Problem) -> list[Changed]:
     """Links between standing nodes whose power has lastingly changed in the last seconds of the window."""
     layout, pairs = problem.layout, problem.rows.pairs
-    standing = np.array([*layout.stands, -1.0])
-    now = float(layout.grid[-1])
-    still = np.isin(pairs[:, 2], standing) & np.isin(pairs[:, 3], standing) & (pairs[:, 1] == RSSI)
-    found = []
+    stands = np.zeros(len(layout.state.owners) + 1, dtype=bool)
+    stands[[*layout.stands, -1]] = True
+    still = stands[pairs[:, 2:4].astype(np.intp)].all(axis=1) & (pairs[:, 1] == RSSI)
+    if not still.any():
+        return []
+    now, found = float(layout.grid[-1]), []
     # A node that was moved keeps its links, and has another number at its new place.
     between = np.column_stack([np.sort(pairs[:, 2:4], axis=1), pairs[:, 9]])
     for link in np.unique(between[still], axis=0):

@@ -8,10 +8,12 @@ from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from estimator.fusion.ledger import RANGE, RSSI
 from estimator.fusion.modes import CAUCHY
 from estimator.graph.dense import Array
+from estimator.graph.kernels import Integers
 from estimator.graph.robust import cauchy_cost
 from estimator.smoothing.drawn import drawn_place
 from estimator.smoothing.elsewhere import (
@@ -67,25 +69,30 @@ def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) ->
     residual, sigma = solved.linear.residual[:m], rows.sigma[:m]
     cost = cauchy_cost(residual / sigma, CAUCHY)
     usual = costs_of(residual, sigma, rows.noise[:m], kinds == RANGE, rows.alike[:m])
-    recent = (rows.pairs[:, 0] > now - recent_s) & (kinds <= RSSI)
+    recent = np.flatnonzero((rows.pairs[:, 0] > now - recent_s) & (kinds <= RSSI))
+    recent = recent[np.argsort(rows.pairs[recent, 0], kind="stable")]
+    one, other = rows.pairs[recent, 2], rows.pairs[recent, 3]
     found: list[tuple[float, Moved]] = []
     suspected = False
     for node in state.nodes.values():
         if node.mode != "static" or node.role == "anchor":
             continue
-        own = np.flatnonzero(recent & ((rows.pairs[:, 2] == node.index) | (rows.pairs[:, 3] == node.index)))
-        own = own[np.argsort(rows.pairs[own, 0], kind="stable")]
+        own = recent[(one == node.index) | (other == node.index)]
         for together in BY_KIND if solved.rests else (*ALL_KINDS, *BY_KIND):
-            mine = own[np.isin(kinds[own], together)]
+            mine = own if together in ALL_KINDS else own[kinds[own] == together[0]]
+            if len(mine) < READINGS_MIN:
+                continue
             # Walls disagree with places all the time: not for them is a window solved again sooner.
             newest = mine[rows.pairs[mine, 0] > now - NEW_S]
-            suspected = suspected or bool(_disagreeing(usual[mine]) or _disagreeing(usual[newest], DOUBT))
+            suspected = suspected or len(disagreeing(usual[mine], SUSPICION)) > 0
+            suspected = suspected or len(disagreeing(usual[newest], DOUBT)) > 0
             asked = solved.rests or together in ALL_KINDS
             if not asked and together != (RANGE,):
                 continue
-            parts = [mine[first:] for first in _disagreeing(cost[mine])]
+            parts = [mine[first:] for first in disagreeing(cost[mine], SUSPICION).tolist()]
             # It may be drawn to its new place already: then what disagrees lies in front.
-            parts += [mine[: len(mine) - first] for first in _disagreeing(cost[mine[::-1]])[:1]]
+            backwards = disagreeing(cost[mine[::-1]], SUSPICION)[:1].tolist()
+            parts += [mine[: len(mine) - first] for first in backwards]
             place, by = best_place(problem, solved, node, parts) if asked else None, solved
             if place is None and together == (RANGE,) and parts and rows.pairs[parts[0][0], 0] > now - NEW_S:
                 drawn = drawn_place(problem, solved, node, parts[0])
@@ -106,19 +113,35 @@ def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) ->
     return [moved for _, moved in found], suspected
 
 
-def _disagreeing(cost: Array, least: float = SUSPICION) -> list[int]:
+@njit(cache=True)
+def disagreeing(cost: Array, least: float) -> Integers:
     """From where on readings, in order of epoch, may disagree with a place by their costs.
 
     Where they do most of all in front, then the latest ones at which they begin to: an outlier from before
     the node was moved belongs to its old place.
+
+    Args:
+        cost: of each reading, in log likelihood, m.
+        least: how much worse than usual they are together.
     """
-    if len(cost) < READINGS_MIN:
-        return []
     last = len(cost) - READINGS_MIN + 1
-    from_here = np.cumsum((cost - USUAL_COST)[::-1])[::-1][:last]
-    bad = cost > USUAL_COST
-    begins = bad[:last] & ~np.concatenate([[False], bad[: last - 1]]) & (from_here >= least)
-    first = int(np.argmax(from_here))
-    if from_here[first] < least:
-        return []
-    return [first, *(i for i in np.flatnonzero(begins)[-LATEST:].tolist() if i != first)]
+    found, count = np.empty(1 + LATEST, dtype=np.int64), 0
+    from_here, worst, first, total = np.empty(max(last, 0)), -np.inf, -1, 0.0
+    for i in range(len(cost) - 1, -1, -1):
+        total += cost[i] - USUAL_COST
+        if i < last:
+            from_here[i] = total
+            if total >= worst:
+                worst, first = total, i
+    if first < 0 or worst < least:
+        return found[:0]
+    begun = 0
+    for i in range(last - 1, -1, -1):
+        begins = cost[i] > USUAL_COST and (i == 0 or not cost[i - 1] > USUAL_COST)
+        if begins and from_here[i] >= least and begun < LATEST:
+            begun += 1
+            if i != first:
+                count += 1
+                found[1 + LATEST - count] = i
+    found[LATEST - count] = first
+    return found[LATEST - count :]
