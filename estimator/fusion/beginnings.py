@@ -48,7 +48,6 @@ def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None
         state.tried[name] = seen
         moving = node.role in MOVING_ROLES
         kept_s = physics.MOVING_SIGHTINGS_S if moving else sightings_s
-        state.ledger.close()
         sightings = of_node(state, node, state.newest_t - kept_s)
         if sightings is None or len(sightings.t) < physics.SIGHTINGS_MIN:
             continue

@@ -44,35 +44,30 @@ class Ledger:
     def __init__(self, complete: bool = False) -> None:
         self.complete = complete
         self.chunks: dict[Table, tuple[Array, ...]] = dict.fromkeys(COLUMNS, ())
-        self._open: dict[Table, list[tuple[float, ...]]] = {name: [] for name in COLUMNS}
+        self._open: dict[Table, list[tuple[float, ...]]] = {}
 
     def copy(self) -> Self:
         """An independent copy."""
-        self.close()
-        twin = type(self)(self.complete)
-        twin.chunks = dict(self.chunks)
+        twin = object.__new__(type(self))
+        twin.complete, twin.chunks = self.complete, dict(self.chunks)
+        # Rows stay open until somebody asks for them: an array for each tick's few would cost more than they.
+        twin._open = {name: list(rows) for name, rows in self._open.items()}
         return twin
 
     def add(self, table: Table, *row: float) -> None:
         """Append one row."""
-        self._open[table].append(row)
+        self._open.setdefault(table, []).append(row)
 
     def extend(self, table: Table, rows: Array) -> None:
         """Append rows, m × the table's columns, which nobody changes afterwards."""
         self._close(table)
         self._append(table, rows)
 
-    def close(self) -> None:
-        """Close the open rows to chunks: what has been added until now."""
-        for name in self._open:
-            self._close(name)
-
     def _close(self, name: Table) -> None:
-        rows = self._open[name]
-        if rows:
+        rows = self._open.pop(name, None)
+        if rows is not None:
             width = len(COLUMNS[name])
             told = np.fromiter(chain.from_iterable(rows), np.float64, len(rows) * width)
-            rows.clear()
             self._append(name, told.reshape(-1, width))
 
     def _append(self, name: Table, rows: Array) -> None:
@@ -90,7 +85,7 @@ class Ledger:
 
     def table(self, name: Table) -> Array:
         """All rows of a table, m × columns, in the order in which they were added."""
-        self.close()
+        self._close(name)
         chunks = self.chunks[name]
         if not chunks:
             return np.zeros((0, len(COLUMNS[name])))
@@ -100,7 +95,7 @@ class Ledger:
 
     def replace(self, name: Table, rows: Array) -> None:
         """Put other rows in the place of a whole table."""
-        self.close()
+        self._open.pop(name, None)
         self.chunks[name] = (rows,) if len(rows) else ()
 
     def forget(self, before_t: float, tables: Sequence[Table]) -> None:

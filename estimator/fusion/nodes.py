@@ -17,7 +17,7 @@ Mode = Literal["undecided", "fixed", "static", "unit", "free", "retired"]
 by the displacements of its PDR unit; free: moves with a velocity of its own; retired: marginalised."""
 
 
-class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
+class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=False):
     """One node, as it stands after a tick.
 
     Attributes:

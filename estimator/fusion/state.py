@@ -1,6 +1,5 @@
 """Everything that the fusion remembers between two ticks."""
 
-from copy import copy
 from typing import Literal, Self
 
 import numpy as np
@@ -86,7 +85,8 @@ class FusionState:
 
     def copy(self) -> Self:
         """An independent copy, without this tick's notices."""
-        twin = copy(self)
+        twin = object.__new__(type(self))
+        twin.__dict__.update(self.__dict__)
         twin.graph, twin.ledger = self.graph.copy(), self.ledger.copy()
         twin.nodes, twin.links, twin.sightings = dict(self.nodes), self.links.copy(), dict(self.sightings)
         twin.noise, twin.uncalibrated = dict(self.noise), dict(self.uncalibrated)

@@ -7,6 +7,7 @@ something is asked for, so many batches cost one pass.
 
 from bisect import bisect_left, insort
 from collections.abc import Sequence
+from operator import itemgetter
 from typing import Self
 
 import msgspec
@@ -19,9 +20,9 @@ from estimator.inertial.samples import AnyFolded, Samples, in_pieces
 from estimator.measurements import AnyReading
 from estimator.smoothing.window import keep_up
 
-SPACING_S = ((4.0, 0.0), (16.0, 4.0), (float("inf"), 16.0))
-"""Up to each age, checkpoints are kept so far apart: a reading late by x is folded anew over about x, no
-more."""
+AGES_S, SPACINGS_S = (4.0, 16.0), (0.0, 4.0, 16.0)
+"""Up to each age, and beyond the last, checkpoints are kept so far apart: a reading late by x is folded anew
+over about x, no more."""
 
 
 class LagRecord(msgspec.Struct, frozen=True, array_like=True):
@@ -108,13 +109,14 @@ class Lag:
         """Take readings in; those beyond the lag are counted and noticed."""
         late: dict[str, list[AnyFolded]] = {}
         self.received += len(readings)
-        for reading in sorted(in_pieces(readings), key=lambda r: r.until_t):
-            if self.newest_t is not None and reading.until_t < self.newest_t - self.lag_s:
+        in_order = sorted(((r.until_t, r) for r in in_pieces(readings)), key=itemgetter(0))
+        for until_t, reading in in_order:
+            if self.newest_t is not None and until_t < self.newest_t - self.lag_s:
                 self.too_late += int(not isinstance(reading, Samples) or reading.last)
                 late.setdefault(names_of(reading)[0], []).append(reading)
                 continue
-            self.newest_t = reading.until_t if self.newest_t is None else max(self.newest_t, reading.until_t)
-            tick = tick_of(reading.until_t)
+            self.newest_t = until_t if self.newest_t is None else max(self.newest_t, until_t)
+            tick = tick_of(until_t)
             if tick not in self._readings:
                 self._readings[tick] = []
                 insort(self._ticks, tick)
@@ -150,10 +152,10 @@ class Lag:
         """Leave checkpoints out as they age; the two newest always stay."""
         now, before = end_of_tick(newest), (0.0, 0.0)
         thinned: list[tuple[int, FusionState]] = []
-        for i, (tick, state) in enumerate(self._checkpoints):
-            end = end_of_tick(tick)
-            _, spacing = SPACING_S[bisect_left(SPACING_S, (now - end, 0.0))]
-            if spacing == 0.0 or i >= len(self._checkpoints) - 2:
+        for i, checkpoint in enumerate(self._checkpoints[:-2]):
+            end = end_of_tick(checkpoint[0])
+            spacing = SPACINGS_S[bisect_left(AGES_S, now - end)]
+            if spacing == 0.0:
                 thinned += self._checkpoints[i:]
                 break
             bucket = (spacing, end // spacing)
@@ -161,7 +163,9 @@ class Lag:
             # again.
             if bucket != before:
                 before = bucket
-                thinned.append((tick, state))
+                thinned.append(checkpoint)
+        else:
+            thinned += self._checkpoints[-2:]
         self._checkpoints = thinned
 
     def _commit(self) -> None:
