@@ -11,7 +11,7 @@ Covariance6 = tuple[float, float, float, float, float, float]
 """Upper triangle of a 3 × 3 covariance: ee, en, eu, nn, nu, uu (m²)."""
 
 
-class NodeEstimate(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
+class NodeEstimate(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=False):
     """What is known of one node after the readings folded so far.
 
     Attributes:
@@ -78,7 +78,7 @@ class Relative(msgspec.Struct, frozen=True, kw_only=True):
     covariance_m2: Covariance6
 
 
-class TrackPoint(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
+class TrackPoint(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=False):
     """One epoch of a smoothed track.
 
     Attributes:

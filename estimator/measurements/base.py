@@ -33,6 +33,7 @@ class Reading(
     tag_field="kind",
     omit_defaults=True,
     kw_only=True,
+    gc=False,  # nothing in it can refer to it: it need not be searched for circles
 ):
     """One reading as a gateway posts it.
 
