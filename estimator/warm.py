@@ -30,6 +30,7 @@ from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobia
 from estimator.smoothing.moved import disagreeing
 from estimator.smoothing.obstructed import excess
 from estimator.smoothing.slips import gains, unsure
+from estimator.smoothing.turned import change_pairs, moved_from, turn_between
 from estimator.smoothing.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
 from estimator.smoothing.ways import Laid, Way
 
@@ -95,6 +96,9 @@ def _warm_chain() -> None:
     excess(slab, one, one)
     disagreeing(one, 0.0)
     single_sigmas(one, one, one)
+    turned_by = turn_between(place[:, :2], place[:, :2])
+    moved_from(x, x, pair, pair, place[0, :2], turned_by)
+    change_pairs(np.eye(2), one, pair, np.zeros((1, 2, 2)))
     add_bends(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
 
 

@@ -11,7 +11,7 @@ from estimator.graph.kirchhoff import marginalised
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.groups import Group
 from estimator.smoothing.layout import Layout
-from estimator.smoothing.turned import across, turn, turn_between
+from estimator.smoothing.turned import change_pairs, moved_from, turn, turn_between, turning
 from estimator.smoothing.walks import PLACES, STATES
 
 
@@ -52,6 +52,7 @@ class Carried:
         self._shared: list[Shared] = []
         self._base_m = np.array(layout.state.base_place()[:2])
         self._places, self._speeds = (np.searchsorted(kept, pairs) for pairs in _turning(prior, at))
+        self._turning = np.concatenate([self._places, self._speeds])
 
     def first(self, x: Array) -> Array:
         """The estimate with the border where the prior was linearised, turned as the map is now, flat."""
@@ -71,7 +72,7 @@ class Carried:
         """Pairs of columns that it ties together, m × 2, as `groups.Groups` takes them."""
         tied = self._matrix != 0.0
         # Turned with the map, what one of east and north is tied to the other is as well.
-        pairs = np.concatenate([self._places, self._speeds])
+        pairs = self._turning
         tied[pairs] |= tied[pairs[:, ::-1]]
         tied[:, pairs] |= tied[:, pairs[:, ::-1]]
         columns = np.where(self._at < self._size, self._at, self._at - self._size + self._width)
@@ -80,11 +81,9 @@ class Carried:
     def add(self, chain: Chain, x: Array) -> None:
         """Add it to the normal equations at an estimate, flat; the chain always has the same groups."""
         turned_by, matrix = self._turned_by(x), self._matrix.copy()
-        vector = self._vector - matrix @ self._moved(x, turned_by)
-        for at in (self._places, self._speeds):
-            vector[at] = turn(vector[at], turned_by)
-            matrix[at] = turn(matrix[at].transpose(0, 2, 1), turned_by).transpose(0, 2, 1)
-            matrix[:, at] = turn(matrix[:, at], turned_by)
+        vector, by = self._vector - matrix @ self._moved(x, turned_by), np.empty((len(self._turning), 2, 2))
+        by[:] = turning(turned_by)
+        change_pairs(matrix, vector, self._turning, by)
         if not self._shared:
             self._shared = [self._shared_with(strand.group) for strand in chain.strands]
         for strand, (moving, lasting, own, rest) in zip(chain.strands, self._shared, strict=True):
@@ -107,16 +106,9 @@ class Carried:
         return turn_between(was_m, x[self._at[self._places]] - self._base_m)
 
     def _moved(self, x: Array, turned_by: float) -> Array:
-        """What the prior takes for deviations from its reference.
-
-        R(−θ) x − r + θ J r of places: what a turn of the whole map by θ moves is along (J r, 1) only, however
-        large the turn, and of that the prior knows nothing but what was said of headings.
-        """
-        moved = x[self._at] - self._reference
-        for at, middle in ((self._places, self._base_m), (self._speeds, np.zeros(2))):
-            was, now = self._reference[at] - middle, x[self._at[at]] - middle
-            moved[at] = turn(now, -turned_by) - was + turned_by * across(was)
-        return moved
+        """What the prior takes for deviations from its reference: see `turned.moved_from`."""
+        pairs = self._places, self._speeds
+        return np.asarray(moved_from(self._reference, x[self._at], *pairs, self._base_m, turned_by))
 
 
 def _turning(prior: Prior, columns: Indices) -> tuple[Indices, Indices]:

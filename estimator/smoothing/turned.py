@@ -8,8 +8,9 @@ where its reference moves.
 """
 
 import numpy as np
+from numba import njit
 
-from estimator.graph.dense import Array
+from estimator.graph.dense import Array, Indices
 from estimator.smoothing.chain import Remainder
 from estimator.smoothing.layout import Layout
 
@@ -22,6 +23,7 @@ FAR = 0.5
 to say there what was said here would make up knowledge, or lose it."""
 
 
+@njit(cache=True)
 def turn_between(was_m: Array, now_m: Array) -> float:
     """By how much places are turned about the base, by least squares (rad), less than a quarter turn.
 
@@ -31,20 +33,82 @@ def turn_between(was_m: Array, now_m: Array) -> float:
         was_m: from the base to where they were, m × 2.
         now_m: to where they are, m × 2.
     """
-    across = float((was_m[:, 0] * now_m[:, 1] - was_m[:, 1] * now_m[:, 0]).sum())
-    along = max(float((was_m * now_m).sum()), 0.0)
-    return float(np.arctan2(across, along + STEADY_M**2))
+    across = along = 0.0
+    for i in range(len(was_m)):
+        across += was_m[i, 0] * now_m[i, 1] - was_m[i, 1] * now_m[i, 0]
+        along += was_m[i, 0] * now_m[i, 0] + was_m[i, 1] * now_m[i, 1]
+    return float(np.arctan2(across, max(along, 0.0) + STEADY_M**2))
 
 
 def turn(ways: Array, by_rad: float) -> Array:
     """Ways, … × 2, turned to the left."""
+    return np.asarray(ways @ turning(by_rad))
+
+
+@njit(cache=True)
+def turning(by_rad: float) -> Array:
+    """What turns ways, … × 2, to the left by an angle: R with `ways @ R`, 2 × 2."""
     cosine, sine = np.cos(by_rad), np.sin(by_rad)
-    return np.asarray(ways @ np.array([[cosine, sine], [-sine, cosine]]))
+    return np.array([[cosine, sine], [-sine, cosine]])
 
 
 def across(ways: Array) -> Array:
     """J of ways, m × 2: a quarter turn to the left."""
-    return np.stack([-ways[:, 1], ways[:, 0]], axis=1)
+    found = np.empty(ways.shape)
+    found[:, 0], found[:, 1] = -ways[:, 1], ways[:, 0]
+    return found
+
+
+@njit(cache=True)
+def moved_from(
+    reference: Array, here: Array, places: Indices, speeds: Indices, base_m: Array, turned_by: float
+) -> Array:
+    """What a prior takes for deviations from its reference, n.
+
+    R(−θ) x − r + θ J r of places: what a turn of the whole map by θ moves is along (J r, 1) only, however
+    large the turn, and of that the prior knows nothing but what was said of headings.
+
+    Args:
+        reference: r, n.
+        here: x, n.
+        places: which of the numbers are east and north of places, m × 2.
+        speeds: which are those of velocities, k × 2.
+        base_m: east and north of the base, 2 (m).
+        turned_by: θ (rad).
+    """
+    moved, cosine, sine = here - reference, np.cos(turned_by), np.sin(turned_by)
+    for i in range(len(places) + len(speeds)):
+        place = i < len(places)
+        e, n = places[i] if place else speeds[i - len(places)]
+        from_e, from_n = (base_m[0], base_m[1]) if place else (0.0, 0.0)
+        was_e, was_n = reference[e] - from_e, reference[n] - from_n
+        now_e, now_n = here[e] - from_e, here[n] - from_n
+        moved[e] = cosine * now_e + sine * now_n - was_e - turned_by * was_n
+        moved[n] = cosine * now_n - sine * now_e - was_n + turned_by * was_e
+    return moved
+
+
+@njit(cache=True)
+def change_pairs(matrix: Array, vector: Array, pairs: Indices, changes: Array) -> None:
+    """AᵀLA and Aᵀb in the place of L and b, where A changes pairs of numbers among themselves.
+
+    Args:
+        matrix: L, n × n, changed.
+        vector: b, n, changed.
+        pairs: which numbers, m × 2.
+        changes: the block of A of each pair, m × 2 × 2.
+    """
+    for i in range(len(pairs)):
+        e, n = pairs[i]
+        ee, en, ne, nn = changes[i, 0, 0], changes[i, 0, 1], changes[i, 1, 0], changes[i, 1, 1]
+        for k in range(len(vector)):
+            one, other = matrix[k, e], matrix[k, n]
+            matrix[k, e], matrix[k, n] = one * ee + other * ne, one * en + other * nn
+        for k in range(len(vector)):
+            one, other = matrix[e, k], matrix[n, k]
+            matrix[e, k], matrix[n, k] = one * ee + other * ne, one * en + other * nn
+        one, other = vector[e], vector[n]
+        vector[e], vector[n] = one * ee + other * ne, one * en + other * nn
 
 
 def turned(left: Remainder, layout: Layout, was: Array, now: Array) -> Remainder:
@@ -71,7 +135,5 @@ def turned(left: Remainder, layout: Layout, was: Array, now: Array) -> Remainder
     share = np.where(near, 1.0 / squared, 0.0)
     change = np.eye(2) + share[:, None, None] * across(off_m)[:, :, None] * across(place_m)[:, None, :]
     matrix, vector, own = left.matrix.copy(), left.vector.copy(), layout.width + at
-    matrix[:, own] = np.einsum("nkc,kcd->nkd", matrix[:, own], change)
-    matrix[own] = np.einsum("kcd,kcn->kdn", change, matrix[own])
-    vector[own] = np.einsum("kcd,kc->kd", change, vector[own])
+    change_pairs(matrix, vector, own, change)
     return Remainder(0.5 * (matrix + matrix.T), vector)
