@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from estimator.graph.dense import Array
+from estimator.graph.filter_kernels import factorised, solved
 from estimator.measurements.range import range_at
 from estimator.measurements.rssi import rssi_at
 
@@ -75,14 +76,16 @@ def find_modes(sought: Sought) -> list[Mode]:
     told = np.ascontiguousarray(sought.points), np.ascontiguousarray(sought.value), sought.sigma
     state, normal, cost = _descend(ranged, *told, _starts(sought), prior, mean)
     modes: list[Mode] = []
-    for i in np.argsort(cost, kind="stable"):
-        place = state[i, :3].copy()
-        # Most starts lead to the same few places: only of those is it asked how sure they are.
-        apart = [float(np.hypot(*(place - m.position_m)[:2])) for m in modes]
-        if all(d > max(APART_M, 3.0 * m.sigma_m) for d, m in zip(apart, modes, strict=True)):
-            covariance = np.linalg.inv(normal[i])[:3, :3]
-            spread = float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1]))
-            modes.append(Mode(place, float(cost[i]), spread, float(np.sqrt(covariance[2, 2]))))
+    left = np.argsort(cost, kind="stable")
+    while len(left):
+        i = left[0]
+        covariance = np.linalg.inv(normal[i])[:3, :3]
+        spread = float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1]))
+        modes.append(Mode(state[i, :3].copy(), float(cost[i]), spread, float(np.sqrt(covariance[2, 2]))))
+        # Most starts lead to the same few places.
+        off = state[left, :2] - state[i, :2]
+        apart = np.hypot(off[:, 0], off[:, 1]) > max(APART_M, 3.0 * spread)
+        left = left[1:][apart[1:]]
     return modes
 
 
@@ -110,7 +113,7 @@ def _starts(sought: Sought) -> Array:
     return np.column_stack([horizontal, rest])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _descend(
     ranged: bool, points: Array, value: Array, sigma: Array, starts: Array, prior: Array, mean: Array
 ) -> tuple[Array, Array, Array]:
@@ -127,14 +130,18 @@ def _descend(
     """
     found = starts.copy()
     normals, costs = np.empty((len(starts), 5, 5)), np.empty(len(starts))
+    damped, factor, unscale = np.empty((5, 5)), np.zeros((5, 5)), np.empty(5)
     for i in range(len(starts)):
         state, damping = starts[i].copy(), 1e-3
         normal, gradient, cost = _linearise(ranged, points, value, sigma, state, prior, mean)
         for _ in range(STEPS):
-            damped = normal.copy()
+            damped[:] = normal
             for r in range(5):
                 damped[r, r] *= 1.0 + damping
-            there = state + np.linalg.solve(damped, gradient)
+            if not factorised(damped, factor, unscale):
+                damping = min(damping * 8.0, 1e9)
+                continue
+            there = state + solved(factor, unscale, gradient)
             normal_there, gradient_there, cost_there = _linearise(
                 ranged, points, value, sigma, there, prior, mean
             )
@@ -150,7 +157,7 @@ def _descend(
     return found, normals, costs
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _linearise(
     ranged: bool, points: Array, value: Array, sigma: Array, state: Array, prior: Array, mean: Array
 ) -> tuple[Array, Array, float]:
@@ -174,6 +181,9 @@ def _linearise(
         for r in range(5):
             pulled = row[r] / loss
             gradient[r] += pulled * residual
-            for c in range(5):
+            for c in range(r, 5):
                 normal[r, c] += pulled * row[c]
+    for r in range(5):
+        for c in range(r):
+            normal[r, c] = normal[c, r]
     return normal, gradient, cost
