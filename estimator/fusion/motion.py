@@ -157,8 +157,6 @@ def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
         state: the fusion.
         until: the epoch, by unit.
     """
-    if not until:
-        return
     nodes = [state.nodes[name] for name in until]
     noise = np.zeros((len(nodes), 3, 3))
     for i, (node, t) in enumerate(zip(nodes, until.values(), strict=True)):

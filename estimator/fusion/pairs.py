@@ -146,8 +146,16 @@ class Pairs:
         if between:
             states = technology_states(state, source) if kind == RANGE else path_loss_states(state, source)
             start = state.graph.starts[states]
-        noise = usual._replace(outliers=learned.outliers(usual.outliers))
-        known = Technology(kind, state.source(source), start, learned.factor, learned.shared, *noise)
+        known = Technology(
+            kind,
+            state.source(source),
+            start,
+            learned.factor,
+            learned.shared,
+            learned.outliers(usual.outliers),
+            usual.shift,
+            usual.spread,
+        )
         numbers = self._held if between else self._sighted
         numbers[source] = len(self._technologies)
         self._technologies.append(known)

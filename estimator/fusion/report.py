@@ -1,6 +1,7 @@
 """What leaves the fusion: estimates of every node, and the position of one relative to another."""
 
 import numpy as np
+from numba import njit
 
 from estimator.estimate import NodeEstimate, Relative
 from estimator.fusion.images import doubt_between_m2, doubt_m2
@@ -8,13 +9,11 @@ from estimator.fusion.introduce import tuple_of, upper_triangle
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
 from estimator.fusion.swings import loose_headings, swung_m2
-from estimator.graph.dense import Array
+from estimator.graph.dense import Array, Indices
 from estimator.measurements.bearing import within_pi
 
-AXES = np.arange(3)
-UPPER = np.triu_indices(3)
-PLANE = [0, 1, 3]
-"""Which of them are of east and north."""
+PLANE = [3, 4, 6]
+"""Where what `shown` tells has the variances and the covariance of east and north."""
 MOVING_MPS = 0.3
 """Below it a velocity tells no heading."""
 
@@ -26,21 +25,40 @@ def estimates(state: FusionState, covariance: Array) -> list[NodeEstimate]:
         state: the fusion.
         covariance: Σ of its graph, n × n.
     """
+    graph = state.graph
     held = [node for node in state.nodes.values() if node.place_m is None and node.decided]
-    rows = np.array([state.graph.starts[node.position] for node in held], dtype=np.intp)[:, None] + AXES
-    # All blocks are taken out at once: a call for each costs more than what it takes out.
-    blocks = covariance[rows[:, UPPER[0]], rows[:, UPPER[1]]]
+    starts = np.array([graph.starts[node.position] for node in held], dtype=np.intp)
+    told = shown(starts, graph.reference, covariance)
     loose = loose_headings(state, covariance)
     if loose:
-        across, variance = covariance[rows[:, :2]][:, :, loose], covariance[loose, loose]
-        blocks[:, PLANE] += swung_m2(across, variance)[:, [0, 0, 1], [0, 1, 1]]
-    places = zip(state.graph.reference[rows].tolist(), blocks.tolist(), strict=True)
-    found = {node.node: place for node, place in zip(held, places, strict=True)}
+        across, variance = covariance[starts[:, None] + np.arange(2)][:, :, loose], covariance[loose, loose]
+        told[:, PLANE] += swung_m2(across, variance)[:, [0, 0, 1], [0, 1, 1]]
+    found = {node.node: place for node, place in zip(held, told.tolist(), strict=True)}
     return [_estimate(state, node, covariance, found.get(node.node)) for node in state.nodes.values()]
 
 
+@njit(cache=True)
+def shown(starts: Indices, x: Array, covariance: Array) -> Array:
+    """Places and their covariances, m × 9: e, n, u (m); ee, en, eu, nn, nu, uu (m²).
+
+    Args:
+        starts: first row of the block of each place, m.
+        x: the reference of the graph, n.
+        covariance: Σ of it, n × n.
+    """
+    found = np.empty((len(starts), 9))
+    for i in range(len(starts)):
+        at, after = starts[i], 3
+        for r in range(3):
+            found[i, r] = x[at + r]
+            for c in range(r, 3):
+                found[i, after] = covariance[at + r, at + c]
+                after += 1
+    return found
+
+
 def _estimate(
-    state: FusionState, node: NodeState, covariance: Array, place: tuple[list[float], list[float]] | None
+    state: FusionState, node: NodeState, covariance: Array, place: list[float] | None
 ) -> NodeEstimate:
     if place is None:
         known = (0.0,) * 6 if node.mode == "fixed" else node.covariance_m2
@@ -52,7 +70,7 @@ def _estimate(
             covariance_m2=known,
             retired=node.mode == "retired",
         )
-    (east, north, up), (ee, en, eu, nn, nu, uu) = place
+    east, north, up, ee, en, eu, nn, nu, uu = place
     if node.otherwise:
         doubt = doubt_m2(node.otherwise, np.array([east, north]))
         ee, en, nn = ee + float(doubt[0, 0]), en + float(doubt[0, 1]), nn + float(doubt[1, 1])
@@ -72,7 +90,7 @@ def _estimate(
 def _heading(state: FusionState, node: NodeState, covariance: Array) -> tuple[float | None, float | None]:
     """The unit's reported heading plus ψ; else the direction of its way."""
     if node.mode == "unit":
-        start = state.graph.rows(node.unit).start
+        start = state.graph.starts[node.unit]
         psi, sigma = float(state.graph.reference[start]), float(np.sqrt(covariance[start, start]))
         if node.unit_heading_rad is not None:
             return within_pi(node.unit_heading_rad + psi), sigma

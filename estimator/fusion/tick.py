@@ -92,8 +92,9 @@ def _fold(
     motion.move_units(state, displacements, singles)
     ready = _covered(state, holds, late_t, unwaited)
     for part in _parts(state, ready):
-        _hold(state, part, singles)
-        singles = []
+        if part or singles:
+            _hold(state, part, singles)
+            singles = []
 
 
 def _covered(
@@ -142,8 +143,9 @@ def keep_poses(state: FusionState) -> None:
 def flush(state: FusionState) -> None:
     """Hold what waits for a displacement against the newest positions: for a picture, on a copy."""
     waiting, state.waiting = state.waiting, ()
-    for part in _parts(state, waiting) if waiting else ():
-        _hold(state, part, [])
+    for part in _parts(state, waiting):
+        if part:
+            _hold(state, part, [])
 
 
 def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Single]) -> None:
@@ -227,8 +229,10 @@ def _carry(state: FusionState, until: Mapping[str, float]) -> None:
             drifting[name] = t
         elif node is not None and node.mode == "unit" and t > node.pose_t + SAME_EPOCH_S:
             silent[name] = t
-    free.move_free(state, drifting)
-    motion.drift_units(state, silent)
+    if drifting:
+        free.move_free(state, drifting)
+    if silent:
+        motion.drift_units(state, silent)
 
 
 def _drop(state: FusionState, reading: Drop) -> None:

@@ -1,5 +1,6 @@
 """Where nodes stood a moment ago, from where their blocks are now."""
 
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -116,7 +117,7 @@ def turned_m(offset_m: Vector3) -> float:
 
 def table_of_marks(marks: list[Mark]) -> Array:
     """Marks as a table, k × 4."""
-    return np.array(marks).reshape(-1, 4)
+    return np.fromiter(chain.from_iterable(marks), np.float64, 4 * len(marks)).reshape(-1, 4)
 
 
 @njit(cache=True, error_model="numpy")
