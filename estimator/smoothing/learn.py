@@ -78,8 +78,8 @@ def learn_walks(
         for factor, (score, sure) in zip(node.walk_factors, scores, strict=True):
             off = np.log(factor)
             known = sure * SEEN + abs(score) + 1.0 / SPREAD**2
-            step = np.clip(2.0 * (score - off / SPREAD**2) / known, -most, most)
-            factors.append(float(np.clip(factor * np.exp(step), LEAST, MOST)))
+            step = min(max(2.0 * (score - off / SPREAD**2) / known, -most), most)
+            factors.append(float(min(max(factor * np.exp(step), LEAST), MOST)))
         state.nodes[node.node] = replace(node, walk_factors=(factors[0], factors[1]))
 
 

@@ -246,7 +246,8 @@ class Rows:
     def residual(self, x: Array) -> Array:
         """Residuals z − h(x) − shift at an estimate x, flat."""
         found = residuals(self._readings, x) - self.shift
-        found[self._bearings] = wrap(found[self._bearings])
+        if len(self._bearings):
+            found[self._bearings] = wrap(found[self._bearings])
         return found
 
     def jacobian(self, x: Array) -> Array:

@@ -166,8 +166,9 @@ class Problem:
             strand = chain.strands[group]
             own = slice(STATES * block, STATES * (block + 1))
             count = max(min(walk.last, length - 1) - walk.first, 0)
-            strand.diagonal[: walk.first, own, own] = np.eye(STATES)
-            strand.diagonal[walk.last + 1 :, own, own] = np.eye(STATES)
+            if walk.first > 0 or walk.last + 1 < length:
+                strand.diagonal[: walk.first, own, own] = np.eye(STATES)
+                strand.diagonal[walk.last + 1 :, own, own] = np.eye(STATES)
             add_motion(
                 block,
                 walk.first,

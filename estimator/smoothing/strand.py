@@ -65,9 +65,10 @@ class Strand:
             information: P⁻¹, m.
             residual: z − h(x), m.
         """
-        blocks = self.diagonal, self.wide, self.corner, self.corner_gradient
-        at = placed.slab, placed.columns
-        scatter_rows(chosen, row, *at, jacobian, information, residual, *blocks)
+        if len(chosen):
+            blocks = self.diagonal, self.wide, self.corner, self.corner_gradient
+            at = placed.slab, placed.columns
+            scatter_rows(chosen, row, *at, jacobian, information, residual, *blocks)
 
     def damp(self, damping: float) -> None:
         """Raise the diagonal by a share of itself (Marquardt)."""
