@@ -59,11 +59,19 @@ WHOLE = Effort(whole=True, nearest=6, newest=2, flips=48, tried=16, rounds=4)
 
 
 class Flip(NamedTuple):
-    """An image of a way from a keyframe on, and up to another one, if it is not its end."""
+    """An image of a way.
+
+    Attributes:
+        since: the keyframe from which on.
+        image: the image.
+        until: the keyframe up to which, if it is not its end.
+        along: which others change sides along with him, by index of their walks, and how.
+    """
 
     since: int
     image: Image
     until: int | None = None
+    along: "tuple[tuple[int, Flip], ...]" = ()
 
 
 class Heard(NamedTuple):
@@ -193,11 +201,11 @@ def flips(
     for radios in (radios_of(heard), radios_of(heard.some(heard.t > now - RECENT_S))):
         for radio_m in radios:
             off_m = way_m - radio_m
-            for k in _nearest(np.hypot(*off_m.T), walk, loose, effort):
+            for k in nearest(np.hypot(*off_m.T), walk, loose, effort.nearest, effort.newest):
                 towards = float(np.arctan2(off_m[k, 1], off_m[k, 0]))
                 found += [Flip(k, image) for image in _around(radio_m, towards)]
         for image, off_m in _across(radios, way_m):
-            near = _nearest(np.abs(off_m), walk, loose, effort)
+            near = nearest(np.abs(off_m), walk, loose, effort.nearest, effort.newest)
             found += [Flip(k, image) for k in near]
             if effort.whole:
                 found += [Flip(k, image, until) for k, until in pairwise(near)]
@@ -256,12 +264,20 @@ def _across(radios: list[Array], places_m: Array) -> list[tuple[Image, Array]]:
     return [(mirrored(one, towards), np.cos(towards) * off[:, 1] - np.sin(towards) * off[:, 0])]
 
 
-def _nearest(off_m: Array, walk: Walk, loose: NDArray[np.bool_], effort: Effort) -> list[int]:
-    """Loose keyframes at which he was nearest; the first is one, if nobody knew him before."""
+def nearest(off_m: Array, walk: Walk, loose: NDArray[np.bool_], most: int, newest: int) -> list[int]:
+    """Loose keyframes at which somebody was nearest; the first is one, if nobody knew him before.
+
+    Args:
+        off_m: how far off he was at each keyframe, k (m).
+        walk: his.
+        loose: see `loose_steps`.
+        most: so many of them.
+        newest: and so many of the last.
+    """
     own = off_m[walk.first : walk.last + 1]
     at = np.flatnonzero((own[1:-1] <= own[:-2]) & (own[1:-1] < own[2:])) + 1
     if walk.begins:
         at = np.concatenate([[0], at])
     at = at[loose[walk.first + at]]
-    nearest = at[np.argsort(own[at], kind="stable")[: effort.nearest]]
-    return sorted({*(walk.first + nearest).tolist(), *(walk.first + at[-effort.newest :]).tolist()})
+    found = at[np.argsort(own[at], kind="stable")[:most]]
+    return sorted({*(walk.first + found).tolist(), *(walk.first + at[-newest:]).tolist()})

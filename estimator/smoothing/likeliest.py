@@ -4,20 +4,24 @@ A parabola about one way knows nothing of its images. So the window is solved fr
 likeliest counts, and how likely the others are is told along with it.
 """
 
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from estimator.fusion.images import Image
 from estimator.graph.dense import Array
+from estimator.measurements.bearing import within_pi
+from estimator.smoothing.along import Costed, company, costed
 from estimator.smoothing.earlier import CLEARER, ITERATIONS, LEAST, earlier
-from estimator.smoothing.flips import LIVE, Effort, Flip, end_of, exposed, flips, heard_by, loose_steps
-from estimator.smoothing.layout import Layout, Walk
-from estimator.smoothing.otherwise import Mode, same_place
+from estimator.smoothing.flips import LIVE, Effort, Flip, exposed, flips, heard_by, loose_steps
+from estimator.smoothing.imaged import Loose, imaged, now_of
+from estimator.smoothing.layout import Layout
+from estimator.smoothing.otherwise import Mode, same_now
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
-from estimator.smoothing.turns import reports_from, turn, turns
+from estimator.smoothing.tried import SAME_RAD, Asked, Begun, Tried, heading
+from estimator.smoothing.turns import faced, reports_from, turns
 
 LEAST_TRIED, WAYS = 2, 3
 """So many images of each way are solved at least; beyond so many ways it is fewer for each."""
@@ -25,10 +29,8 @@ SOON = 4
 """Iterations after which an image is given up that is hopeless."""
 FAR, HOPELESS = 600.0, 50.0
 """What an image costs more, in log likelihood, that is not solved at all, and that is given up."""
-SAME_RAD = 0.4
-"""Headings nearer to each other than this are one, and not at rest yet."""
-BEGINNINGS = 3
-"""Images of a way that put somebody at the same place now, from keyframes this near, are the same."""
+SLACKS_M = (1.0, 0.3)
+"""How far off an estimate may be at first whose way nobody has gone: with a unit turned, or others along."""
 
 
 class Judged(NamedTuple):
@@ -47,28 +49,6 @@ class Judged(NamedTuple):
     exposed: bool
 
 
-class _Tried(NamedTuple):
-    """A solution, where it puts somebody at epochs that are asked for (m), and the image it began from.
-
-    Attributes:
-        solved: the solution.
-        places_m: the places, k × 2.
-        facing_rad: where it is one of several headings, the last of them; else none.
-        flip: the image.
-    """
-
-    solved: Solved
-    places_m: Array
-    facing_rad: float | None
-    flip: Flip
-
-    def same(self, other: Self) -> bool:
-        """Whether both are the same solution: one of a heading may not be at rest yet far from its start."""
-        if self.facing_rad is not None and other.facing_rad is not None:
-            return bool(np.cos(self.facing_rad - other.facing_rad) > np.cos(SAME_RAD))
-        return same_place(self.places_m, other.places_m)
-
-
 def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged:
     """The likeliest solution among the images of those who are followed by ranges alone, and the others.
 
@@ -83,8 +63,9 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
         led = _loose(problem, solved)
         most = max(effort.tried * WAYS // max(len(led), WAYS), LEAST_TRIED)
         for i in led:
-            solved, others, open_ = _judged(problem, solved, i, effort._replace(tried=most))
-            modes += others
+            solved, others, open_ = _judged(problem, solved, i, led, effort._replace(tried=most))
+            # Those who change sides together are found at the image of each of them.
+            modes += [m for m in others if not any(same_now(problem.layout, m.x, k.x) for k in modes)]
             alike = alike or open_ or bool(others)
         if solved is entered:
             break
@@ -93,103 +74,119 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
     return Judged(problem, solved, modes, alike)
 
 
-def _loose(problem: Problem, solved: Solved) -> list[int]:
+def _loose(problem: Problem, solved: Solved) -> Loose:
     """Those walks that ranges alone have led, or a unit that may have faced anything."""
-    walks = enumerate(problem.layout.walks)
-    return [
-        i
-        for i, walk in walks
-        if walk.node.moving and (walk.node.turned or loose_steps(problem, solved, i).any())
-    ]
+    found = {}
+    for i, walk in enumerate(problem.layout.walks):
+        if walk.node.moving:
+            loose = loose_steps(problem, solved, i)
+            if walk.node.turned or loose.any():
+                found[i] = loose
+    return found
 
 
-def _judged(problem: Problem, solved: Solved, index: int, effort: Effort) -> tuple[Solved, list[Mode], bool]:
+def _judged(
+    problem: Problem, solved: Solved, index: int, loose: Loose, effort: Effort
+) -> tuple[Solved, list[Mode], bool]:
     """The likeliest solution among the images of one walk, the others, and whether he is exposed."""
     layout = problem.layout
     walk, now = layout.walks[index], float(layout.grid[-1])
     problem.rows.widen(solved.x, solved.linear.jacobian)
-    loose, heard = loose_steps(problem, solved, index), heard_by(problem, solved, walk)
+    own, heard = loose[index], heard_by(problem, solved, walk)
     way_m = layout.states(solved.x, index)[:, :2]
-    found = flips(heard, way_m, walk, loose, now, effort) if loose.any() else []
+    found = flips(heard, way_m, walk, own, now, effort) if own.any() else []
     if walk.node.turned:
+        # Each way before has several headings since.
+        effort = effort._replace(tried=effort.tried * 3 // 2)
         found += turns(heard, way_m, walk, reports_from(layout, index))
-    begun = [*_again(layout, walk, loose), *_cheapest(problem, solved.x, index, loose, found)]
+    begun = _begun(problem, solved.x, index, loose, _again(layout, solved.x, index, own), found)
     best, *others = _solutions(problem, solved, index, loose, begun, effort)
-    last = bool(loose[walk.last - 1])
-    modes = _modes(layout, best, others, walk, last or walk.node.turned)
+    modes = _modes(layout, best, others, index, loose)
+    last = bool(own[walk.last - 1])
     return best.solved, modes, last and exposed(heard, now)
 
 
-def _flipped(layout: Layout, x: Array, index: int, loose: NDArray[np.bool_], flip: Flip) -> Array:
-    """An estimate with a way where an image has it, flat; what a unit has reported goes along as it is."""
-    there, walk = x.copy(), layout.walks[index]
-    if flip.image.turned_rad != 0.0:
-        turn(layout, there, index, flip)
-        return there
-    end = end_of(flip, loose) - flip.since
-    states = layout.states(there, index)[flip.since : walk.last + 1]
-    if walk.way is None:
-        flip.image.move(states[: end + 1])
-        return there
-    was = states[end, :2].copy()
-    states[: end + 1, :2] = flip.image.of(states[: end + 1, :2])
-    states[end + 1 :, :2] += states[end, :2] - was
-    return there
-
-
-def _again(layout: Layout, walk: Walk, loose: NDArray[np.bool_]) -> list[Flip]:
+def _again(layout: Layout, x: Array, index: int, loose: NDArray[np.bool_]) -> list[Flip]:
     """The images that were likely when the window was last solved, the likeliest first."""
+    walk = layout.walks[index]
     known = [o for o in walk.node.otherwise if o.of == walk.number and o.since_t >= layout.grid[0]]
     known.sort(key=lambda other: -other.share)
     since = [int(np.searchsorted(layout.grid, other.since_t - 1e-6)) for other in known]
+    by_rad = _turned_by(layout, x, index)
+    ways = [
+        faced(o.way, within_pi(o.way.turned_rad - by_rad))
+        if by_rad != 0.0 and o.way.turned_rad != 0.0
+        else o.way
+        for o in known
+    ]
     return [
-        Flip(k, other.way)
-        for k, other in zip(since, known, strict=True)
-        if walk.first <= k < walk.last and (loose[k] or other.way.turned_rad != 0.0)
+        Flip(k, way)
+        for k, way in zip(since, ways, strict=True)
+        if walk.first <= k < walk.last and (loose[k] or way.turned_rad != 0.0)
     ]
 
 
-def _cheapest(
-    problem: Problem, x: Array, index: int, loose: NDArray[np.bool_], images: list[Flip]
+def _turned_by(layout: Layout, x: Array, index: int) -> float:
+    """By how much a unit's way is turned in an estimate since its images were told (rad)."""
+    if layout.walks[index].way is None:
+        return 0.0
+    # Where it begins: a filter that does not know where its newest step led swings to and fro with it.
+    now, was = (layout.states(one, index)[reports_from(layout, index), 3] for one in (x, layout.start()))
+    turned = within_pi(now - was)
+    return turned if abs(turned) > SAME_RAD else 0.0
+
+
+def _begun(
+    problem: Problem, x: Array, index: int, loose: Loose, again: list[Flip], new: list[Flip]
 ) -> list[Flip]:
-    """Images in order of what they cost unsolved, without those that cost far too much."""
-    most = problem.at(x).cost + FAR
-    costs = np.array([problem.at(_flipped(problem.layout, x, index, loose, flip)).cost for flip in images])
-    return [images[k] for k in np.argsort(costs, kind="stable").tolist() if costs[k] < most]
+    """Images to begin from: the cheapest of each that is known, then new ones that do not cost far too much.
+
+    Args:
+        problem: of a window.
+        x: its estimate, flat.
+        index: of the walk.
+        loose: see `imaged.Loose`.
+        again: images that were likely when the window was last solved.
+        new: others.
+    """
+    others, most = company(problem, index, loose), problem.at(x).cost + FAR
+    best, found = [], list[Costed]()
+    for flip in again:
+        ways = costed(problem, x, index, loose, flip, others)
+        # As it was told; what else its unit may face then, if it was told before, is asked as of new ones.
+        told = [one for one in ways if flip.image.turned_rad in (0.0, one.flip.image.turned_rad)]
+        best.append(min(told, key=lambda one: one.cost).flip)
+        found += [one for one in ways if one.flip.image != flip.image]
+    for flip in new:
+        found += costed(problem, x, index, loose, flip, others)
+    found.sort(key=lambda one: one.cost)
+    return [*best, *(one.flip for one in found if one.cost < most)]
 
 
 def _solutions(
     problem: Problem,
     solved: Solved,
     index: int,
-    loose: NDArray[np.bool_],
+    loose: Loose,
     begun: list[Flip],
     effort: Effort,
-) -> list[_Tried]:
+) -> list[Tried]:
     """The solutions that images of a way lead to, that which is to be shown first."""
-    layout, walk = problem.layout, problem.layout.walks[index]
-    asked = slice(walk.first if effort.whole else walk.last, walk.last + 1)
-
-    def tried_of(one: Solved, flip: Flip) -> _Tried:
-        way = layout.states(one.x, index)
-        turned = walk.node.turned and (flip.image.turned_rad != 0.0 or one is solved)
-        return _Tried(one, way[asked, :2], float(way[walk.last, 3]) if turned else None, flip)
-
-    found = [tried_of(solved, Flip(0, Image()))]
-    tried: list[tuple[int, Array]] = []
+    asked = Asked(problem.layout, index, effort.whole)
+    found = [Tried(solved, Flip(0, Image()))]
+    tried: list[Begun] = []
     for flip in begun:
-        x = _flipped(layout, solved.x, index, loose, flip)
-        start_m = layout.states(x, index)[asked, :2].copy()
-        if any(abs(flip.since - k) < BEGINNINGS and same_place(start_m, at) for k, at in tried):
+        start = Begun(imaged(problem.layout, solved.x, index, flip, loose), flip)
+        if any(asked.same_start(start, other) for other in tried):
             continue
         if len(tried) == effort.tried:
             break
-        tried.append((flip.since, start_m))
-        there = _solved(problem, x, found[0].solved.cost + HOPELESS)
+        tried.append(start)
+        there = _solved(problem, start, found[0].solved.cost + HOPELESS)
         if there is None:
             continue
-        new = tried_of(there, flip)
-        same = next((k for k, one in enumerate(found) if one.same(new)), None)
+        new = Tried(there, flip)
+        same = next((k for k, one in enumerate(found) if asked.same(one.begun, new.begun)), None)
         if same is None:
             found.append(new)
         elif there.cost < found[same].solved.cost - CLEARER:
@@ -200,10 +197,13 @@ def _solutions(
     return [best, *(one for one in found if one is not best)]
 
 
-def _solved(problem: Problem, x: Array, most: float) -> Solved | None:
-    """The solution from an estimate; None where there is none, or it still costs more than `most` soon."""
+def _solved(problem: Problem, start: Begun, most: float) -> Solved | None:
+    """The solution from an image; None where there is none, or it still costs more than `most` soon."""
+    # What others, or what a unit faces, have been turned by is hardly more than a guess.
+    rough = start.flip.along or start.flip.image.turned_rad != 0.0
+    slacks = SLACKS_M if rough else ()
     try:
-        found = problem.solve(x, iterations=SOON)
+        found = problem.solve(start.x, slacks, len(slacks) + SOON)
         if found.cost > most:
             return None
         return found if found.rests else problem.solve(found.x, iterations=ITERATIONS)
@@ -212,15 +212,32 @@ def _solved(problem: Problem, x: Array, most: float) -> Solved | None:
         return None
 
 
-def _modes(layout: Layout, best: _Tried, others: list[_Tried], walk: Walk, loose: bool) -> list[Mode]:
+def _modes(layout: Layout, best: Tried, others: list[Tried], index: int, loose: Loose) -> list[Mode]:
     """Solutions by how likely they are, and as images of the likeliest one."""
     odds = [float(np.exp(best.solved.cost - one.solved.cost)) for one in others]
-    back, total = best.flip.image.back(), 1.0 + sum(odds)
-    found = []
+    total, found = 1.0 + sum(odds), []
     for one, each in zip(others, odds, strict=True):
         if each > LEAST:
-            image = one.flip.image.after(back)
-            since_t = float(layout.grid[max(one.flip.since, best.flip.since)])
-            images = {walk.number: image} if loose else {}
-            found.append(Mode(walk.number, each / total, one.solved.x, since_t, image, images))
+            ways, images = _between(layout, index, best, one), {}
+            for i, way in ways.items():
+                walk = layout.walks[i]
+                if loose[i][walk.last - 1] or walk.node.turned:
+                    images[walk.number] = now_of(walk, way)
+            number, since_t = layout.walks[index].number, layout.grid[max(one.flip.since, best.flip.since)]
+            found.append(Mode(number, each / total, one.solved.x, float(since_t), ways[index], images))
+    return found
+
+
+def _between(layout: Layout, index: int, best: Tried, one: Tried) -> dict[int, Image]:
+    """One solution as images of the ways of the likeliest one, by index of the walk."""
+    was, gone = (dict([(index, each.flip), *each.flip.along]) for each in (best, one))
+    found = {}
+    for i in sorted({*was, *gone}):
+        back = was[i].image.back() if i in was else Image()
+        image = gone[i].image.after(back) if i in gone else back
+        if image.turned_rad != 0.0:
+            # What it began from was not where it has led to.
+            by_rad = heading(layout, i, one.solved.x) - heading(layout, i, best.solved.x)
+            image = faced(image, within_pi(by_rad))
+        found[i] = image
     return found

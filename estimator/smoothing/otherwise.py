@@ -40,6 +40,12 @@ def same_place(one_m: Array, other_m: Array) -> bool:
     return bool((np.hypot(*(one_m - other_m).T) < APART_M).all())
 
 
+def same_now(layout: Layout, one: Array, other: Array) -> bool:
+    """Whether two solutions of a window, flat, put everybody who moves at the same place now."""
+    now = slice((layout.length - 1) * layout.width, layout.length * layout.width)
+    return same_place(one[now].reshape(-1, STATES)[:, :2], other[now].reshape(-1, STATES)[:, :2])
+
+
 def otherwise(layout: Layout, x: Array, modes: Iterable[Mode]) -> dict[str, tuple[Otherwise, ...]]:
     """Where everybody in a window may be otherwise now.
 
@@ -56,7 +62,9 @@ def otherwise(layout: Layout, x: Array, modes: Iterable[Mode]) -> dict[str, tupl
         name, own = layout.state.owners[number], slice(start, start + 2)
         told = []
         for mode in modes:
-            if not same_place(mode.x[own], x[own]):
+            # Who has changed sides with others may be on the line just now, and leave it elsewhere.
+            goes_on = number in mode.images and len(mode.images) > 1
+            if goes_on or not same_place(mode.x[own], x[own]):
                 image = mode.images.get(number, Image()).through(x[own], mode.x[own])
                 told.append(Otherwise(mode.of, mode.share, image, mode.since_t, mode.way))
         if layout.state.nodes[name].index == number:

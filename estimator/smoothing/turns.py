@@ -14,7 +14,8 @@ from estimator.measurements.bearing import within_pi
 from estimator.smoothing.flips import Flip, Heard, radios_of
 from estimator.smoothing.layout import Layout, Walk
 
-SAME_S = 1e-6
+SAME = 1e-6
+"""Epochs (s) and turns (rad) nearer to each other than this are the same."""
 
 
 def reports_from(layout: Layout, index: int) -> int:
@@ -28,7 +29,7 @@ def reports_from(layout: Layout, index: int) -> int:
     if walk.way is None:
         return walk.first
     times = layout.times[walk.first : walk.last, index]
-    return walk.first + int(np.searchsorted(times, walk.way.begin_t - SAME_S))
+    return walk.first + int(np.searchsorted(times, walk.way.begin_t - SAME))
 
 
 def turns(heard: Heard, way_m: Array, walk: Walk, since: int) -> list[Flip]:
@@ -67,12 +68,45 @@ def turn(layout: Layout, x: Array, index: int, flip: Flip) -> None:
     here = states[flip.since : walk.last + 1]
     here[:, :2] = image.of(here[:, :2])
     states[walk.first : walk.last + 1, 3] += image.turned_rad
+    drops_along(layout, x, walk, image, flip.since)
+
+
+def drops_along(
+    layout: Layout, x: Array, walk: Walk, image: Image, since: int, until: int | None = None
+) -> None:
+    """Put what somebody has dropped in an estimate where an image of his way has it.
+
+    Args:
+        layout: of the window.
+        x: the estimate, flat; changed in place.
+        walk: his.
+        image: of his way.
+        since: the keyframe from which on.
+        until: that up to which; none: to the end.
+    """
     drops, size = layout.state.ledger.table("drops"), layout.length * layout.width
-    dropped = (drops[:, 2] == walk.number) & (drops[:, 0] >= layout.grid[flip.since])
+    dropped = (drops[:, 2] == walk.number) & (drops[:, 0] >= layout.grid[since])
+    if until is not None:
+        dropped &= drops[:, 0] < layout.grid[until]
     for number in drops[dropped, 1].astype(int).tolist():
         if number in layout.stands:
             start = size + layout.stands[number]
             x[start : start + 2] = image.of(x[start : start + 2])
+
+
+def turns_whole(image: Image) -> bool:
+    """Whether an image is a turn of all that a unit has led, along with what it faces."""
+    by_rad = float(np.arctan2(image.sine, image.cosine))
+    turned = image.flip > 0.0 and image.turned_rad != 0.0
+    return turned and abs(within_pi(by_rad - image.turned_rad)) < SAME
+
+
+def faced(image: Image, by_rad: float) -> Image:
+    """An image of a unit's way, with another turn of what the unit faces."""
+    if not turns_whole(image):
+        return replace(image, turned_rad=by_rad)
+    centre_m = np.linalg.lstsq(np.eye(2) - image.matrix, image.shift_m, rcond=None)[0]
+    return facing(np.asarray(centre_m, dtype=np.float64), by_rad)
 
 
 def all_round() -> list[float]:

@@ -27,7 +27,7 @@ from estimator.smoothing.extent import (
 from estimator.smoothing.flips import Flip
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.learn import learn
-from estimator.smoothing.likeliest import likeliest
+from estimator.smoothing.likeliest import SLACKS_M, likeliest
 from estimator.smoothing.moved import moved_nodes
 from estimator.smoothing.otherwise import otherwise
 from estimator.smoothing.rows import Rows
@@ -56,7 +56,6 @@ ITERATIONS = 4
 RESTING = 0.1
 """A window that gains less in log likelihood is solved again soon anyway."""
 TURN_ITERATIONS = 8
-SLACKS_M = (1.0, 0.3)
 FOUND_RAD = 0.15
 
 
@@ -202,6 +201,6 @@ def _judge_turns(state: FusionState, layout: Layout, found: Array) -> None:
     for i, walk in enumerate(layout.walks):
         node = state.nodes[walk.node.node]
         sigma = float(np.sqrt(max(found[walk.last, i, 3, 3], 0.0)))
-        one_of_two = any(other.of == node.index and other.way.turned_rad != 0.0 for other in node.otherwise)
+        one_of_two = any(other.image.turned_rad != 0.0 for other in node.otherwise)
         if node.turned and sigma < FOUND_RAD and not one_of_two:
             state.nodes[node.node] = replace(node, turned=False)
