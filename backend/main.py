@@ -58,6 +58,7 @@ def build_app(settings: Settings, *, token: str | None, link: socket.socket, lin
         await writer.start()
         await workers.start()
         hub.start()
+        smoothing.start()
         try:
             yield
         finally:

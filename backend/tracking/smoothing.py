@@ -8,6 +8,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Coroutine, Hashable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from typing import Any, Generic, ParamSpec, TypeVar
 
 from backend.errors import TooSlow, Unavailable
@@ -30,6 +31,9 @@ KEPT = 8
 
 EXPLAINED = 32
 """Answers about single nodes that are kept: they are small, and some responders are looked at together."""
+
+PREPARED_AFTER_S = 10.0
+"""Its process is started when a server has begun its other work: whoever asks first does not wait for it."""
 
 SMOOTH_WITHIN_S = 60.0
 EXPLAIN_WITHIN_S = 60.0
@@ -102,6 +106,17 @@ class Smoothing:
         self._evidence: Kept[Evidence | None] = Kept(EXPLAINED)
         self._advice: Kept[Advice | None] = Kept(EXPLAINED)
         self._relative: Kept[Relative | None] = Kept(EXPLAINED)
+        self._preparing: asyncio.Task[None] | None = None
+
+    def start(self) -> asyncio.Task[None]:
+        """Have the process ready before it is asked for: what is returned ends when it is."""
+        self._preparing = asyncio.create_task(self._prepare())
+        return self._preparing
+
+    async def _prepare(self) -> None:
+        await asyncio.sleep(PREPARED_AFTER_S)
+        with suppress(Unavailable):
+            await self._aside(os.getpid)
 
     async def smoothed(self, head: Head) -> Smoothed:
         """The smoothed tracks of an incident with everything known now.
@@ -188,6 +203,8 @@ class Smoothing:
 
     def close(self) -> None:
         """End the process."""
+        if self._preparing is not None:
+            self._preparing.cancel()
         self._tracks.cancel()
         self._evidence.cancel()
         self._advice.cancel()

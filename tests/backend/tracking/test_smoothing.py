@@ -1,11 +1,13 @@
 """Sums that are kept by what was asked."""
 
 import asyncio
+import multiprocessing
 
 import pytest
 
 from backend.errors import TooSlow
-from backend.tracking.smoothing import Kept
+from backend.tracking import smoothing
+from backend.tracking.smoothing import Kept, Smoothing
 
 
 class Counted:
@@ -97,3 +99,30 @@ def test_the_sums_that_were_asked_for_longest_ago_are_given_up_first() -> None:
         assert sums["b"].begun == 2
 
     asyncio.run(ask())
+
+
+def test_the_process_is_there_before_anybody_asks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(smoothing, "PREPARED_AFTER_S", 0.0)
+
+    async def begins_and_ends() -> None:
+        aside = Smoothing("sqlite://")
+        await aside.start()
+        (process,) = multiprocessing.active_children()
+        assert process.is_alive()
+        aside.close()
+        process.join(10.0)
+        assert not process.is_alive()
+
+    asyncio.run(begins_and_ends())
+
+
+def test_who_ends_before_it_is_prepared_starts_no_process() -> None:
+    async def begins_and_ends() -> None:
+        aside = Smoothing("sqlite://")
+        aside.start()
+        await asyncio.sleep(0)
+        aside.close()
+        await asyncio.sleep(0)
+        assert not multiprocessing.active_children()
+
+    asyncio.run(begins_and_ends())
