@@ -18,7 +18,8 @@ from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.robust import mixture_cost, weigh
 from estimator.graph.scatter import add_motion, couple, localise, scatter_rows
 from estimator.graph.variable import Variable
-from estimator.inertial.strapdown import Strapdown, advance
+from estimator.inertial.boot import Strapdown
+from estimator.inertial.strapdown import advance
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi

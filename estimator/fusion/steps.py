@@ -12,6 +12,7 @@ from estimator.fusion.rows import Single
 from estimator.fusion.silence import LONGEST_S
 from estimator.fusion.standing import stand_on
 from estimator.fusion.way import Mark
+from estimator.inertial.navigation import Led
 from estimator.measurements.displacement import Displacement
 
 TRAIL_S = 4.0
@@ -89,7 +90,7 @@ class Step:
             across, up = across + length**2, up + length**2
         still = own > 0.0 and length < physics.STILL_MPS * own and start <= pose_t
         turn = self._stand(reading, still)
-        up += (physics.SCALE_SIGMA * u) ** 2
+        up += (physics.SCALE_SIGMA * u) ** 2 + (reading.up_m2 if isinstance(reading, Led) else 0.0)
         noise = walk_noise((across, across, up), reading.sigma_m, length, duration)
         if own > 0.0:
             self._speed_mps = math.hypot(e, n) / own

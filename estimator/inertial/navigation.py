@@ -6,8 +6,9 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from estimator.graph.dense import Array
+from estimator.inertial.boot import FLAT_M2, Strapdown
 from estimator.inertial.samples import Samples
-from estimator.inertial.strapdown import Strapdown, advance
+from estimator.inertial.strapdown import advance
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.imu import RATE_MIN_HZ
 
@@ -36,7 +37,13 @@ anything, which is 1.8 rad."""
 
 
 class Led(Displacement, tag="led", frozen=True):
-    """A displacement that samples have made: it counts with them."""
+    """A displacement that samples have made: it counts with them.
+
+    Attributes:
+        up_m2: variance of its height beside `sigma_m`, as floors may not be flat (m²).
+    """
+
+    up_m2: float = 0.0
 
 
 class Navigation(NamedTuple):
@@ -167,6 +174,7 @@ def _led(
                 boot = boot.anew()
             told_t, unsure_m2 = t, 0.0
             boot.place[:] = boot.unheld[3:] = 0.0
+            boot.footing[FLAT_M2] = 0.0
     end_t = known.t + len(force) * step_s
     return found, known._replace(t=end_t, told_t=told_t, unsure_m2=unsure_m2, boot=boot), text
 
@@ -190,5 +198,6 @@ def _displacement(boot: Strapdown, node: str, from_t: float, t: float, unsure_m2
         delta_m=(east, north, up),
         from_t=from_t,
         heading_rad=boot.heading_rad,
-        sigma_m=float(np.sqrt(way_m2 + speed_m2 + moved_m2 + unsure_m2)) + 1e-6,
+        sigma_m=math.sqrt(way_m2 + speed_m2 + moved_m2 + unsure_m2) + 1e-6,
+        up_m2=float(boot.footing[FLAT_M2]),
     )

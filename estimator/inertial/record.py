@@ -1,8 +1,8 @@
 """A boot's navigation as plain values, for snapshots: exact to the last bit."""
 
 from estimator.graph.record import ArrayRecord, pack, unpack
+from estimator.inertial.boot import Strapdown
 from estimator.inertial.navigation import Navigation
-from estimator.inertial.strapdown import Strapdown
 
 NavigationRecord = tuple[tuple[float, float, float, float, float], list[ArrayRecord]]
 """`Navigation` in plain values."""

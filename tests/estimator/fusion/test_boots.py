@@ -230,3 +230,20 @@ def test_a_unit_too_slow_to_be_followed_says_so_once() -> None:
     notices = tracker.take_notices()
     assert [n.code for n in notices] == ["not_fused"]
     assert "5 samples a second" in notices[0].text
+
+
+def test_who_walks_down_a_gentle_slope_is_not_said_to_be_on_its_top_for_certain() -> None:
+    """His floors are taken for flat, and his storey is as open as his height."""
+    gait = walked([Stride(1.3, 0.0, -0.03)] * 60, START_T)
+    down, along = KirchhoffTracker(), KirchhoffTracker()
+    down.fold(incident(gait))
+    along.fold(incident(walked([Stride(1.3)] * 60, START_T)))
+    estimate, level = shown(down), shown(along)
+    assert estimate.position_m is not None
+    assert estimate.covariance_m2 is not None
+    assert level.covariance_m2 is not None
+    off_m = estimate.position_m[2] - truth_m(gait, estimate.t)[2]
+    assert off_m > 1.0
+    assert off_m < 1.5 * math.sqrt(estimate.covariance_m2[5])
+    assert level.covariance_m2[5] < 0.5**2
+    assert estimate.covariance_m2[0] < 1.1 * level.covariance_m2[0]

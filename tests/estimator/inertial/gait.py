@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from estimator.graph.dense import Array
-from estimator.inertial.strapdown import GRAVITY_MPS2
+from estimator.inertial.boot import GRAVITY_MPS2
 from estimator.measurements.imu import Imu
 
 STEP_S = 0.005

@@ -1,6 +1,5 @@
 """From readings to displacements."""
 
-from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -10,35 +9,15 @@ from hypothesis import strategies as st
 from msgspec import structs
 from scipy.spatial.transform import Rotation
 
-from estimator.inertial.navigation import BRIDGED_S, EACH_S, JITTER_MOST_S, Led, Navigation, navigate
+from estimator.inertial.levelling import ALIGN_S
+from estimator.inertial.navigation import BRIDGED_S, EACH_S, JITTER_MOST_S, navigate
 from estimator.inertial.record import navigation_of, record_of
 from estimator.inertial.samples import PIECE_S, pieces
-from estimator.inertial.strapdown import ALIGN_S
-from estimator.measurements.displacement import Displacement
 from estimator.measurements.imu import Imu
-from tests.estimator.inertial.gait import AROUND, STEP_S, Gait, Stride, walked
+from tests.estimator.inertial.gait import AROUND, STEP_S, Stride, walked
+from tests.estimator.inertial.led import followed, true_m, unsure_m, where
 
 GAIT = walked(AROUND, start_t=50.0).noisy(np.random.default_rng(1))
-
-
-def followed(readings: list[Imu], heading_rad: float = 0.0) -> tuple[list[Led], list[str]]:
-    known: Navigation | None = None
-    found, texts = [], []
-    for reading in readings:
-        for piece in pieces(reading):
-            done = navigate(known, piece, heading_rad)
-            known = done.navigation
-            found += done.displacements
-            texts += [done.text] if done.text else []
-    return found, texts
-
-
-def where(displacements: Sequence[Displacement]) -> np.ndarray:
-    return np.asarray(np.sum(np.array([d.delta_m for d in displacements]), axis=0))
-
-
-def true_m(gait: Gait, t: float) -> np.ndarray:
-    return np.array([np.interp(t, gait.t + STEP_S, gait.place_m[:, axis]) for axis in range(3)])
 
 
 def test_displacements_follow_each_other_and_lead_along_the_way() -> None:
@@ -110,10 +89,6 @@ def test_a_clock_that_runs_fast_is_followed() -> None:
     assert found[-1].t == pytest.approx(fast[-1].until_t, abs=EACH_S + JITTER_MOST_S)
 
 
-def unsure_m(found: Sequence[Displacement]) -> float:
-    return float(np.sqrt(sum((d.sigma_m or 0.0) ** 2 for d in found)))
-
-
 @pytest.mark.parametrize("lost", [2, 5, 10, 18])
 @pytest.mark.parametrize("at", [900, 930, 960])
 def test_a_few_lost_samples_are_told_by_what_they_may_have_been(lost: int, at: int) -> None:
@@ -147,6 +122,18 @@ def test_nothing_is_made_up_for_missing_samples() -> None:
     assert found[gap + 1].from_t == pytest.approx(2400 * STEP_S + ALIGN_S)
     missed = true_m(gait, found[gap + 1].from_t or 0.0) - true_m(gait, found[gap].t)
     assert np.linalg.norm(where(found) + missed - gait.place_m[-1]) < 0.5
+
+
+@pytest.mark.parametrize(("each", "lost"), [(10, 0.1), (10, 0.2), (20, 0.1)])
+def test_what_a_bad_link_leaves_of_a_walk_says_how_unsure_it_is(each: int, lost: float) -> None:
+    """Beside the ways in the gaps, of which nothing is told."""
+    chance, nees = np.random.default_rng(0), []
+    for seed in range(6):
+        gait = walked([Stride()] * 20).noisy(np.random.default_rng(seed))
+        found, _ = followed([r for r in gait.readings(each) if r.t < 2.0 or chance.random() > lost])
+        told = sum(true_m(gait, d.t) - true_m(gait, d.from_t or 0.0) for d in found)
+        nees.append(float(np.sum((where(found) - told) ** 2)) / (3.0 * unsure_m(found) ** 2))
+    assert 0.1 < np.mean(nees) < 1.6
 
 
 @pytest.mark.parametrize("angle_rad", [-1.4, -1.5, 1.4, 1.65])

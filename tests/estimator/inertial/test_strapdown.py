@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from estimator.inertial.strapdown import ATTITUDE_WALK, HELD_S, VELOCITY_WALK, Strapdown, advance
+from estimator.inertial.boot import HELD_S, Strapdown
+from estimator.inertial.strapdown import ATTITUDE_WALK, VELOCITY_WALK, advance
 from tests.estimator.inertial.gait import AROUND, STEP_S, Gait, Stride, walked
 
 
@@ -40,10 +41,11 @@ def test_however_the_unit_is_mounted(angle_rad: tuple[float, float, float]) -> N
     np.testing.assert_allclose(boot.place, gait.place_m[-1], atol=0.005 * 22.0)
 
 
-def test_what_gyros_at_rest_tell_is_taken_for_their_bias() -> None:
-    gait = walked([Stride()] * 5)
-    boot = led(gait._replace(rate=gait.rate + np.array([0.01, -0.02, 0.015])))
-    np.testing.assert_allclose(boot.bias, [0.01, -0.02, 0.015], atol=1e-6)
+@pytest.mark.parametrize("times", [1.0, 3.0])
+def test_what_gyros_at_rest_tell_is_taken_for_their_bias(times: float) -> None:
+    gait, bias = walked([Stride()] * 5), times * np.array([0.01, -0.02, 0.015])
+    boot = led(gait._replace(rate=gait.rate + bias))
+    np.testing.assert_allclose(boot.bias, bias, atol=1e-6)
     np.testing.assert_allclose(boot.place, gait.place_m[-1], atol=0.005 * 6.5)
 
 
@@ -64,7 +66,7 @@ def test_the_covariance_of_errors_is_that_of_its_linear_model() -> None:
         noise = np.diag([0.0] * 3 + [VELOCITY_WALK**2 * STEP_S] * 3 + [ATTITUDE_WALK**2 * STEP_S] * 3)
         # A place moves on with the velocity before the sample.
         expected = tilt @ drift @ expected @ drift.T @ tilt.T + noise
-    boot.known[HELD_S] = -1e9
+    boot.footing[HELD_S] = -1e9
     advance(boot, gait.force[swing], gait.rate[swing], STEP_S)
     np.testing.assert_allclose(boot.covariance, expected, rtol=1e-6, atol=1e-15)
 
