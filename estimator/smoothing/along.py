@@ -18,14 +18,14 @@ from estimator.smoothing.flips import Flip, end_of, nearest
 from estimator.smoothing.imaged import Loose, imaged
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.solve import Problem
-from estimator.smoothing.turns import facing, reports_from, turns_whole
+from estimator.smoothing.turns import all_round, facing, reports_from, turns_whole
 
 COMPANY = 3
 """So many go along at most, those who hear him, or each other, most."""
 MOMENTS = 2
 """So many moments at which each of them may have changed sides, and one more: the last."""
-ROUND, HEADINGS = 8, 2
-"""So many turns of a unit that is switched on later are looked at, and so many of them tried."""
+HEADINGS = 2
+"""So many turns all round are tried of a unit that is switched on later."""
 
 
 class Costed(NamedTuple):
@@ -109,8 +109,7 @@ def _faced(layout: Layout, x: Array, index: int, flip: Flip, loose: Loose) -> li
         return []
     way_m = layout.states(x, index)[:, :2]
     mirror = _turn_of(flip.image, way_m[walk.last] - way_m[reports_from(layout, index)])
-    angles = mirror + 2.0 * np.pi * np.arange(ROUND) / ROUND
-    return [replace(flip.image, turned_rad=within_pi(angle)) for angle in angles.tolist()]
+    return [replace(flip.image, turned_rad=within_pi(mirror + by)) for by in (0.0, *all_round())]
 
 
 def _joins(

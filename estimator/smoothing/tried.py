@@ -57,7 +57,7 @@ class Asked(NamedTuple):
 
     def same(self, one: Begun, other: Begun) -> bool:
         """Whether two solutions are the same: one of a heading may not be at rest yet far from its start."""
-        if not (self.turned(one) and self.turned(other)):
+        if not (self._turned(one) and self._turned(other)):
             return self._same_places(one, other, self.of)
         begins = reports_from(self.layout, self.of)
         starts_m = [self.layout.states(each.x, self.of)[begins : begins + 1, :2] for each in (one, other)]
@@ -66,7 +66,7 @@ class Asked(NamedTuple):
         facing_rad = [heading(self.layout, self.of, each.x) for each in (one, other)]
         return bool(np.cos(facing_rad[0] - facing_rad[1]) > np.cos(SAME_RAD))
 
-    def turned(self, one: Begun) -> bool:
+    def _turned(self, one: Begun) -> bool:
         """Whether an estimate is one of several headings, not of several ways that a unit has gone since."""
         if not self.layout.walks[self.of].node.turned:
             return False
