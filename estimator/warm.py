@@ -18,8 +18,9 @@ from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.robust import mixture_cost, weigh
 from estimator.graph.scatter import add_motion, couple, localise, scatter_rows
 from estimator.graph.variable import Variable
-from estimator.inertial.boot import Strapdown
-from estimator.inertial.strapdown import advance
+from estimator.inertial.advancing import advance
+from estimator.inertial.boot import Boot
+from estimator.inertial.loose import tell
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
@@ -45,9 +46,10 @@ def warm_up() -> None:
     for states in ((one, one), (strided[0], strided[1])):
         predict_range(place, place, *states)
     predict_rssi(place, place, one, strided[1])
-    boot, rests = Strapdown.new(0.0), np.zeros((60, 3)) + np.array([0.0, 0.0, 9.8])
+    boot, rests = Boot.new(0.0), np.zeros((60, 3)) + np.array([0.0, 0.0, 9.8])
     taken = advance(boot, rests, np.zeros((60, 3)), 0.01)
     advance(boot, rests[taken:], np.zeros((60, 3))[taken:], 0.01)
+    tell(boot, 0.5)
     predict_bearing(place, place, one)
     wrap(one)
     weigh(one, one, one, *strided)

@@ -10,59 +10,87 @@ from estimator.inertial.stance import BEFORE
 GRAVITY_MPS2 = 9.80665
 TOLD = 9
 """Numbers gathered while a boot is levelled: samples, forces 3, rates 3, their squares, seconds."""
-ERRORS = 9
-"""Place, velocity, attitude (3 each)."""
+ERRORS = 18
+"""Place, velocity, attitude, biases and scales of accelerometers, biases of gyros (3 each)."""
+VELOCITY, ATTITUDE, FORCE, SCALE, RATE = 3, 6, 9, 12, 15
+"""Where each begins among the errors."""
 GRAVITY, HEADING, AXIS, AZIMUTH = range(4)
 """What `known` holds."""
-HELD_S, STOOD, RISE_M, FLAT_M, FLAT_M2 = range(5)
+HELD_S, STOOD, FOOTHOLD_M, FLAT_M, FLAT_M2 = range(5)
 """What `footing` holds."""
+BRANCHED_M, APART_M, GLIDES_MPS, GLID_M, MOVED_M2, SINCE_S, RESTLESS_S = 0, 3, 5, 7, 9, 11, 12
+"""Where each begins in `loose`."""
+RATES, SQUARES, SECONDS, BIAS_RADPS, UNRESTED_S = 0, 3, 4, 5, 6
+"""Where each begins in `gyros`."""
 
 
 class Strapdown(NamedTuple):
-    """A boot's navigation between two samples. The frame has z up, and x where `heading_rad` says.
+    """Inertial navigation between two samples. Its frame has z up, and x where its heading says.
 
     Attributes:
         attitude: from the sensor's axes to the frame's, 3 × 3.
         velocity: 3 (m/s).
         place: 3 (m).
-        covariance: of the errors of place, velocity and attitude, 9 × 9.
-        bias: of the gyros, 3 (rad/s).
-        felt: what the last samples were like, see `stance.felt_by`.
-        told: what is gathered while it is levelled, see `TOLD`; its first number is −1 afterwards.
-        known: gravity as the unit feels it (m/s²); what its x axis faced when it last stood (rad); which of
-            its axes tells that, the most level one; and that one's direction less the x axis' (rad): 4.
-        footing: how long ago a standstill last held it (s); how many standstills in a row have held it; how
-            far it is above its last foothold (m); how far it would have risen were floors not flat (m); and
-            what that adds to the variance of its height (m²): 5.
-        unheld: velocity (m/s) and way (m) that it seems to have while it stands, 6: that may move, too.
+        sensors: biases (m/s²) and scales of its accelerometers, biases of its gyros (rad/s), in its axes, 9.
+        covariance: of the errors, what is true less what is told, see `ERRORS`, 18 × 18.
     """
 
     attitude: Array
     velocity: Array
     place: Array
+    sensors: Array
     covariance: Array
-    bias: Array
+
+    @classmethod
+    def new(cls) -> Self:
+        """One that nothing is known of yet."""
+        return cls(np.eye(3), np.zeros(3), np.zeros(3), np.zeros(9), np.zeros((ERRORS, ERRORS)))
+
+
+class Boot(NamedTuple):
+    """A boot's navigation between two samples.
+
+    Attributes:
+        held: its navigation, held by whatever looks like a standstill. Its sensors are what they were told
+            to be, and no states.
+        free: navigation from where it last rested, held by nothing but rests: its place counts from there.
+            What its sensors are off by are states of it.
+        felt: what the last samples were like, see `stance.felt_by`.
+        told: what is gathered while it is levelled, see `TOLD`; its first number is −1 afterwards.
+        known: gravity as the unit feels it (m/s²); what its x axis faced when it last stood (rad); which of
+            its axes tells that, the most level one; and that one's direction less the x axis' (rad): 4.
+        footing: how long ago a standstill last held it (s); how many standstills in a row have held it; how
+            high its last foothold was (m); how far it would have risen were floors not flat (m); and what
+            that adds to the variance of its height (m²): 5.
+        loose: where it was when `free` began, 3 (m); then, across and up each: how far apart the two have
+            been told to be (m); how fast it glides though it seems to stand, and nobody knows how far (m/s);
+            how far that may have led (m); and what all this adds to the variance of its place (m²). How long
+            ago `free` began (s); for how long it has seemed to stand, but not to rest (s): 13.
+        gyros: what they have reported in this rest, summed up: rates 3, their squares, seconds; how well
+            their biases are known (rad/s); and how long ago a rest has told them (s): 7.
+    """
+
+    held: Strapdown
+    free: Strapdown
     felt: Array
     told: Array
     known: Array
     footing: Array
-    unheld: Array
+    loose: Array
+    gyros: Array
 
     @classmethod
     def new(cls, heading_rad: float) -> Self:
         """One that nothing is known of yet, but what its x axis faces."""
-        nothing = np.zeros(3)
         return cls(
-            np.eye(3),
-            nothing,
-            nothing.copy(),
-            np.zeros((ERRORS, ERRORS)),
-            nothing.copy(),
+            Strapdown.new(),
+            Strapdown.new(),
             BEFORE.copy(),
             np.zeros(TOLD),
             np.array([GRAVITY_MPS2, heading_rad, 0.0, 0.0]),
             np.zeros(5),
-            np.zeros(6),
+            np.zeros(13),
+            np.zeros(7),
         )
 
     def anew(self) -> Self:
@@ -70,11 +98,15 @@ class Strapdown(NamedTuple):
         again = self.new(self.heading_rad)
         again.known[AXIS], again.known[AZIMUTH] = self.known[AXIS], self.known[AZIMUTH]
         again.footing[FLAT_M] = self.footing[FLAT_M]
+        again.held.sensors[:] = self.held.sensors
+        again.gyros[BIAS_RADPS] = self.gyros[BIAS_RADPS]
         return again
 
     def copy(self) -> Self:
         """Another one that may be changed."""
-        return type(self)(*(array.copy() for array in self))
+        held, free, *rest = self
+        one, other = (Strapdown(*(array.copy() for array in each)) for each in (held, free))
+        return type(self)(one, other, *(array.copy() for array in rest))
 
     @property
     def levelled(self) -> bool:

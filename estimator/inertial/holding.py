@@ -3,24 +3,21 @@
 import numpy as np
 from numba import njit
 
-from estimator.graph.dense import Array
 from estimator.inertial.boot import (
     AXIS,
     AZIMUTH,
     ERRORS,
     FLAT_M,
     FLAT_M2,
+    FOOTHOLD_M,
     HEADING,
     HELD_S,
-    RISE_M,
     STOOD,
-    Strapdown,
+    Boot,
 )
-from estimator.inertial.rotations import turned_about
-from estimator.inertial.stance import ALIKE_S, stance_sigma
+from estimator.inertial.stance import stance_sigma
+from estimator.inertial.strapdown import correct, mend, stand_still
 
-UNHELD_S = 1.0
-"""What a boot is moved by while it seems to stand is forgotten in so long: its tilt is not known better."""
 STRIDE_S = 0.15
 """What has not stood for longer has made a stride."""
 FOOTHOLD = 4
@@ -33,13 +30,15 @@ RISE_SIGMA_M = 0.015
 
 
 @njit(cache=True, error_model="numpy")
-def hold(boot: Strapdown, ahead: Array, step_s: float) -> None:
+def hold(boot: Boot, step_s: float) -> float:
     """Hold a boot's velocity against nil where it stands, and its height against that of its last foothold.
 
     Args:
         boot: changed in place.
-        ahead: its acceleration by this sample, 3 (m/s²).
         step_s: time from the last sample to this one (s).
+
+    Returns:
+        How far from nil its velocity may be along each axis (m/s); infinite where it does not stand.
     """
     footing = boot.footing
     footing[HELD_S] += step_s
@@ -47,60 +46,35 @@ def hold(boot: Strapdown, ahead: Array, step_s: float) -> None:
     if not np.isinf(sigma):
         footing[STOOD] = 1.0 if footing[HELD_S] > STRIDE_S else footing[STOOD] + 1.0
         footing[HELD_S] = 0.0
-        _stand(boot, sigma)
-    _follow(boot, ahead, step_s)
+        error = np.zeros(ERRORS)
+        stand_still(boot.held, error, sigma)
+        mend(boot.held, error)
+        if footing[STOOD] == FOOTHOLD:
+            level_off(boot)
+        face(boot)
+    return sigma
 
 
 @njit(cache=True, error_model="numpy")
-def _stand(boot: Strapdown, sigma: float) -> None:
-    error = np.zeros(ERRORS)
-    # One axis after the other: their errors at a standstill are independent of each other.
-    for axis in range(3, 6):
-        _correct(boot, error, axis, boot.velocity[axis - 3], sigma)
-    if boot.footing[STOOD] == FOOTHOLD:
-        _stand_as_high(boot, error)
-    for c in range(3):
-        boot.place[c] += error[c]
-        boot.velocity[c] += error[3 + c]
-    boot.footing[RISE_M] += error[2]
-    boot.attitude[:] = turned_about(error[6:9], boot.attitude)
+def face(boot: Boot) -> None:
+    """Note what its x axis faces: it stands."""
     axis = int(boot.known[AXIS])
-    azimuth = np.arctan2(boot.attitude[1, axis], boot.attitude[0, axis])
+    azimuth = np.arctan2(boot.held.attitude[1, axis], boot.held.attitude[0, axis])
     boot.known[HEADING] = azimuth - boot.known[AZIMUTH]
 
 
 @njit(cache=True, error_model="numpy")
-def _stand_as_high(boot: Strapdown, error: Array) -> None:
+def level_off(boot: Boot) -> None:
     """A foothold is as high as the one before, or a stair's step away; heights count from it from now on."""
-    footing, rise_m = boot.footing, boot.footing[RISE_M] + error[2]
+    held, footing = boot.held, boot.footing
+    rise_m = held.place[2] - footing[FOOTHOLD_M]
     if abs(rise_m) < LEVEL_M:
-        boot.covariance[2, 2] += RISE_SIGMA_M**2
-        _correct(boot, error, 2, footing[RISE_M], LEVEL_SIGMA_M)
+        error = np.zeros(ERRORS)
+        held.covariance[2, 2] += RISE_SIGMA_M**2
+        correct(held.covariance, error, 2, -rise_m, LEVEL_SIGMA_M)
+        mend(held, error)
         # Its unit rises with each stride, or the floor does: nothing tells one from the other.
         before_m2 = footing[FLAT_M] ** 2
         footing[FLAT_M] += rise_m
         footing[FLAT_M2] += max(footing[FLAT_M] ** 2 - before_m2, 0.0)
-    footing[RISE_M] = -error[2]
-
-
-@njit(cache=True, error_model="numpy")
-def _correct(boot: Strapdown, error: Array, axis: int, value: float, sigma: float) -> None:
-    """Take in that a state is nil, but for `sigma`; `error` takes by what all are to be corrected."""
-    covariance = boot.covariance
-    variance = covariance[axis, axis] + sigma * sigma
-    gain = covariance[:, axis] / variance
-    missed = -(value + error[axis])
-    for r in range(ERRORS):
-        error[r] += gain[r] * missed
-    for r in range(ERRORS):
-        for c in range(ERRORS):
-            covariance[r, c] -= gain[r] * gain[c] * variance
-
-
-@njit(cache=True, error_model="numpy")
-def _follow(boot: Strapdown, ahead: Array, step_s: float) -> None:
-    """Sum up what a boot that stands is moved by all the same: in a lift, on a stretcher, where it slides."""
-    unheld, stands = boot.unheld, boot.footing[HELD_S] <= 2.0 * ALIKE_S
-    for c in range(3):
-        unheld[c] = unheld[c] * (1.0 - step_s / UNHELD_S) + step_s * ahead[c] if stands else 0.0
-        unheld[3 + c] += step_s * unheld[c]
+    footing[FOOTHOLD_M] = held.place[2]

@@ -4,8 +4,25 @@ import numpy as np
 from numba import njit
 
 from estimator.graph.dense import Array
-from estimator.inertial.boot import AXIS, AZIMUTH, GRAVITY, GRAVITY_MPS2, HEADING, Strapdown
+from estimator.inertial.boot import (
+    ATTITUDE,
+    AXIS,
+    AZIMUTH,
+    BIAS_RADPS,
+    ERRORS,
+    FORCE,
+    GRAVITY,
+    GRAVITY_MPS2,
+    HEADING,
+    RATE,
+    SCALE,
+    VELOCITY,
+    Boot,
+    Strapdown,
+)
+from estimator.inertial.resting import RESTED_RADPS, UNRESTED_RADPS
 from estimator.inertial.rotations import level
+from estimator.inertial.strapdown import FORCE_SIGMA_MPS2, SCALE_SIGMA, mend
 
 GRAVITY_OFF_MPS2 = 0.3
 """The Earth's gravity differs by 0.03 m/s² from place to place, a unit's scale by a few per cent of it."""
@@ -18,10 +35,16 @@ RESTING_RADPS, BIASED_RADPS = 0.05, 0.1
 TILT_SIGMA_RAD = (0.02, 0.2)
 """Of a boot that rests while it is levelled, and of one that does not."""
 START_SIGMA_MPS = (0.02, 1.0)
+SWING_SIGMA_MPS = (0.02, 3.0)
+"""The same of what is not held by standstills: a boot may be swung when it begins."""
+LEVEL_SIGMA_RAD = (0.003, 0.5)
+"""The tilt beside what its accelerometers are off by."""
+UP_SIGMA_MPS2 = 0.03
+"""How well gravity is known: what accelerometers at rest feel more or less of it is their own."""
 
 
 @njit(cache=True, error_model="numpy")
-def gather(boot: Strapdown, force: Array, rate: Array, step_s: float) -> None:
+def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
     """Take in a sample of a boot that is to be levelled, and level it when there are enough.
 
     Args:
@@ -52,19 +75,73 @@ def gather(boot: Strapdown, force: Array, rate: Array, step_s: float) -> None:
         and biased < BIASED_RADPS**2
         and abs(pull - GRAVITY_MPS2) < GRAVITY_OFF_MPS2
     )
+    held, free = boot.held, boot.free
     if rests:
-        boot.bias[:] = turning
+        held.sensors[6:] = turning
         boot.known[GRAVITY] = pull
-    boot.attitude[:] = level(mean, int(boot.known[AXIS]), boot.known[HEADING] + boot.known[AZIMUTH])
+        boot.gyros[BIAS_RADPS] = RESTED_RADPS
+    elif boot.gyros[BIAS_RADPS] == 0.0:
+        boot.gyros[BIAS_RADPS] = UNRESTED_RADPS
+    held.attitude[:] = level(mean, int(boot.known[AXIS]), boot.known[HEADING] + boot.known[AZIMUTH])
     for axis in range(2):
-        if abs(boot.attitude[2, axis]) <= abs(boot.attitude[2, 1 - axis]):
+        if abs(held.attitude[2, axis]) <= abs(held.attitude[2, 1 - axis]):
             boot.known[AXIS] = float(axis)
     axis = int(boot.known[AXIS])
-    azimuth = np.arctan2(boot.attitude[1, axis], boot.attitude[0, axis])
+    azimuth = np.arctan2(held.attitude[1, axis], held.attitude[0, axis])
     boot.known[AZIMUTH] = azimuth - boot.known[HEADING]
     tilt, speed = TILT_SIGMA_RAD[0 if rests else 1], START_SIGMA_MPS[0 if rests else 1]
     for c in range(3):
-        boot.covariance[3 + c, 3 + c] = speed * speed
+        held.covariance[VELOCITY + c, VELOCITY + c] = speed * speed
     for c in range(2):
-        boot.covariance[6 + c, 6 + c] = tilt * tilt
+        held.covariance[ATTITUDE + c, ATTITUDE + c] = tilt * tilt
+    free.attitude[:] = held.attitude
+    free.sensors[:] = held.sensors
+    unrested = 0 if rests else 1
+    doubt(free, mean, SWING_SIGMA_MPS[unrested], LEVEL_SIGMA_RAD[unrested], boot.gyros[BIAS_RADPS])
+    if rests:
+        _weigh(free, mean)
     told[0] = -1.0
+
+
+@njit(cache=True, error_model="numpy")
+def doubt(boot: Strapdown, force: Array, speed_mps: float, tilt_rad: float, bias_radps: float) -> None:
+    """What is not known of a navigation whose sensors are states, when it has just been levelled.
+
+    Args:
+        boot: its covariance is changed in place.
+        force: what it was levelled by, in the sensor's axes, 3 (m/s²).
+        speed_mps: how fast it may be (m/s).
+        tilt_rad: how much its attitude may be tilted beside what its accelerometers are off by (rad).
+        bias_radps: how well the biases of its gyros are known (rad/s).
+    """
+    covariance, attitude = boot.covariance, boot.attitude
+    covariance[:] = 0.0
+    for c in range(3):
+        covariance[VELOCITY + c, VELOCITY + c] = speed_mps**2
+        covariance[FORCE + c, FORCE + c] = FORCE_SIGMA_MPS2**2
+        covariance[SCALE + c, SCALE + c] = SCALE_SIGMA**2
+        covariance[RATE + c, RATE + c] = bias_radps**2
+    # What accelerometers are off by across gravity has been taken for a tilt.
+    tilted = np.zeros((3, 6))
+    for c in range(3):
+        tilted[0, c], tilted[1, c] = -attitude[1, c] / GRAVITY_MPS2, attitude[0, c] / GRAVITY_MPS2
+        tilted[:, 3 + c] = tilted[:, c] * force[c]
+    offs = np.diag(np.diag(covariance)[FORCE:RATE])
+    covariance[ATTITUDE:FORCE, FORCE:RATE] = tilted @ offs
+    covariance[FORCE:RATE, ATTITUDE:FORCE] = (tilted @ offs).T
+    covariance[ATTITUDE:FORCE, ATTITUDE:FORCE] = tilted @ offs @ tilted.T
+    for c in range(2):
+        covariance[ATTITUDE + c, ATTITUDE + c] += tilt_rad**2
+
+
+@njit(cache=True, error_model="numpy")
+def _weigh(boot: Strapdown, force: Array) -> None:
+    """What accelerometers at rest feel more or less than gravity is their own."""
+    pull = np.sqrt(np.dot(force, force))
+    row = np.zeros(ERRORS)
+    for c in range(3):
+        row[FORCE + c], row[SCALE + c] = force[c] / pull, force[c] * force[c] / pull
+    along = boot.covariance @ row
+    variance = np.dot(row, along) + UP_SIGMA_MPS2**2
+    boot.covariance[:] -= np.outer(along, along) / variance
+    mend(boot, along * ((pull - GRAVITY_MPS2) / variance))

@@ -6,9 +6,20 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from estimator.graph.dense import Array
-from estimator.inertial.boot import FLAT_M2, Strapdown
+from estimator.inertial.advancing import advance
+from estimator.inertial.boot import (
+    ATTITUDE,
+    FLAT_M2,
+    FOOTHOLD_M,
+    FORCE,
+    GRAVITY_MPS2,
+    MOVED_M2,
+    VELOCITY,
+    Boot,
+)
+from estimator.inertial.loose import tell
+from estimator.inertial.resting import turned_rad2
 from estimator.inertial.samples import Samples
-from estimator.inertial.strapdown import advance
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.imu import RATE_MIN_HZ
 
@@ -65,12 +76,12 @@ class Navigation(NamedTuple):
     unsure_m2: float
     jitter_s2: float
     newest: Array
-    boot: Strapdown
+    boot: Boot
 
     @classmethod
     def new(cls, t: float, heading_rad: float) -> Self:
         """That of a boot of which nothing is known at `t` but what its x axis faces."""
-        boot = Strapdown.new(heading_rad)
+        boot = Boot.new(heading_rad)
         return cls(t, t, heading_rad, 0.0, JITTER_S**2, np.zeros(6), boot)
 
 
@@ -80,7 +91,8 @@ class Navigated(NamedTuple):
     Attributes:
         navigation: after it.
         displacements: in order of epoch, in the frame whose x axis the boot faced at the start.
-        turned_rad2: variance of its heading by samples that are missing, or may be, before it (rad²).
+        turned_rad2: variance that its heading takes by samples that are missing, or may be, before it, and
+            by gyros whose bias no rest has told (rad²).
         text: why samples could not be used, if they could not.
     """
 
@@ -111,7 +123,7 @@ def navigate(before: Navigation | None, piece: Samples, heading_rad: float) -> N
         off_s = 0.0
     samples, known, turned = _joined(known, off_s, step_s, samples)
     found, after, told = _led(known, piece.node, samples, step_s)
-    return Navigated(after, found, turned, told)
+    return Navigated(after, found, turned + turned_rad2(known.boot, after.boot), told)
 
 
 def _joined(
@@ -137,11 +149,15 @@ def _joined(
         return samples, known._replace(t=t, told_t=t, unsure_m2=0.0, boot=known.boot.anew()), turned**2
     shares = (np.arange(1, missing + 1) / (missing + 1.0))[:, None]
     bridge = before + shares * (samples[0] - before)
-    velocity, rate = known.boot.velocity, bridge[:, 3:]
+    velocity, rate = known.boot.held.velocity, bridge[:, 3:]
     lost_m2 = (BRIDGED_OFF * off_s) ** 2 * float(np.dot(velocity, velocity))
     turned_rad2 = (BRIDGED_OFF * off_s) ** 2 * float((rate**2).sum(axis=1).max())
     boot = known.boot.copy()
-    boot.covariance[range(6, 9), range(6, 9)] += turned_rad2
+    for each in (boot.held, boot.free):
+        each.covariance[range(ATTITUDE, FORCE), range(ATTITUDE, FORCE)] += turned_rad2
+    ahead = bridge[:, :3] @ boot.free.attitude.T - (0.0, 0.0, GRAVITY_MPS2)
+    faster_m2ps2 = (0.5 * off_s) ** 2 * float((ahead**2).sum(axis=1).max())
+    boot.free.covariance[range(VELOCITY, ATTITUDE), range(VELOCITY, ATTITUDE)] += faster_m2ps2
     known = known._replace(
         t=known.t + off_s - missing * step_s, unsure_m2=known.unsure_m2 + lost_m2, boot=boot
     )
@@ -167,31 +183,35 @@ def _led(
                 text = "its samples feel no gravity: the unit is dead, or measures in other units"
             told_t = t if boot.levelled else told_t
         elif t >= told_t + EACH_S - 0.5 * step_s:
+            tell(boot, t - told_t)
             if _sound(boot):
                 found.append(_displacement(boot, node, told_t, t, unsure_m2))
             else:
                 text = "the boot never stood, or its samples are wrong: it is levelled anew"
                 boot = boot.anew()
             told_t, unsure_m2 = t, 0.0
-            boot.place[:] = boot.unheld[3:] = 0.0
+            boot.loose[:3] -= boot.held.place
+            boot.footing[FOOTHOLD_M] -= boot.held.place[2]
+            boot.held.place[:] = 0.0
             boot.footing[FLAT_M2] = 0.0
+            boot.loose[MOVED_M2 : MOVED_M2 + 2] = 0.0
     end_t = known.t + len(force) * step_s
     return found, known._replace(t=end_t, told_t=told_t, unsure_m2=unsure_m2, boot=boot), text
 
 
-def _sound(boot: Strapdown) -> bool:
+def _sound(boot: Boot) -> bool:
     """Whether it moves as a boot may, and knows how well it knows that."""
-    speed = float(np.sqrt(np.dot(boot.velocity, boot.velocity)))
-    finite = np.isfinite(boot.covariance).all() and np.isfinite(boot.attitude).all()
-    return speed < FASTEST_MPS and bool(finite) and bool(np.isfinite(boot.place).all())
+    held = boot.held
+    speed = float(np.sqrt(np.dot(held.velocity, held.velocity)))
+    return speed < FASTEST_MPS and all(bool(np.isfinite(array).all()) for array in held)
 
 
-def _displacement(boot: Strapdown, node: str, from_t: float, t: float, unsure_m2: float) -> Led:
-    east, north, up = boot.place.tolist()
-    speed_m2 = max(float(boot.covariance[range(3, 6), range(3, 6)].max()), 0.0) * (t - from_t) ** 2
-    way_m2 = STRIDE_SIGMA_M_PER_ROOT_M**2 * float(np.sqrt(np.dot(boot.place, boot.place)))
-    # What it stands on may have moved: then it went so far.
-    moved_m2 = float(np.dot(boot.unheld[3:], boot.unheld[3:]))
+def _displacement(boot: Boot, node: str, from_t: float, t: float, unsure_m2: float) -> Led:
+    held, velocities = boot.held, range(VELOCITY, ATTITUDE)
+    east, north, up = held.place.tolist()
+    speed_m2 = max(float(held.covariance[velocities, velocities].max()), 0.0) * (t - from_t) ** 2
+    way_m2 = STRIDE_SIGMA_M_PER_ROOT_M**2 * float(np.sqrt(np.dot(held.place, held.place)))
+    moved_m2, lifted_m2 = boot.loose[MOVED_M2 : MOVED_M2 + 2].tolist()
     return Led(
         t=t,
         node=node,
@@ -199,5 +219,5 @@ def _displacement(boot: Strapdown, node: str, from_t: float, t: float, unsure_m2
         from_t=from_t,
         heading_rad=boot.heading_rad,
         sigma_m=math.sqrt(way_m2 + speed_m2 + moved_m2 + unsure_m2) + 1e-6,
-        up_m2=float(boot.footing[FLAT_M2]),
+        up_m2=float(boot.footing[FLAT_M2]) + max(lifted_m2 - moved_m2, 0.0),
     )

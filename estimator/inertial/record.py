@@ -1,7 +1,7 @@
 """A boot's navigation as plain values, for snapshots: exact to the last bit."""
 
 from estimator.graph.record import ArrayRecord, pack, unpack
-from estimator.inertial.boot import Strapdown
+from estimator.inertial.boot import Boot, Strapdown
 from estimator.inertial.navigation import Navigation
 
 NavigationRecord = tuple[tuple[float, float, float, float, float], list[ArrayRecord]]
@@ -11,11 +11,15 @@ NavigationRecord = tuple[tuple[float, float, float, float, float], list[ArrayRec
 def record_of(navigation: Navigation) -> NavigationRecord:
     """The record of a navigation; it shares nothing with it."""
     t, told_t, began_rad, unsure_m2, jitter_s2, newest, boot = navigation
-    return (t, told_t, began_rad, unsure_m2, jitter_s2), [pack(array) for array in (newest, *boot)]
+    held, free, *rest = boot
+    plain = t, told_t, began_rad, unsure_m2, jitter_s2
+    return plain, [pack(array) for array in (newest, *held, *free, *rest)]
 
 
 def navigation_of(record: NavigationRecord) -> Navigation:
     """The navigation that a record was made of."""
     plain, arrays = record
-    newest, *boot = (unpack(array) for array in arrays)
-    return Navigation(*plain, newest, Strapdown(*boot))
+    newest, *known = (unpack(array) for array in arrays)
+    size = len(Strapdown._fields)
+    held, free = Strapdown(*known[:size]), Strapdown(*known[size : 2 * size])
+    return Navigation(*plain, newest, Boot(held, free, *known[2 * size :]))

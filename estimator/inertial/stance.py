@@ -22,29 +22,35 @@ REMEMBERED_S = 0.02
 """A boot that swings has moments in which nothing is felt: it stands when it has felt little for so long."""
 ALIKE_S = 0.025
 """Nearer to each other, standstills have the same error: they count once."""
-BEFORE = np.array([0.0, 0.0, 0.0, 1e6, 1e6])
+QUIET_MPS2, QUIET_RADPS, CHANGED_S = 0.25, 0.3, 0.1
+"""A boot that is lifted, dragged or swung feels more change than this in a tenth of a second, or turns."""
+QUIET, LAST, JERKED = 8, 9, 12
+"""Where each is among what is felt."""
+BEFORE = np.array([0.0, 0.0, 0.0, 1e6, 1e6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 """What a boot has felt before its first sample: anything."""
 
 
 @njit(cache=True, error_model="numpy")
-def felt_by(felt: Array, force: Array, rate: Array, bias: Array, gravity_mps2: float, step_s: float) -> None:
+def felt_by(felt: Array, force: Array, rate: Array, gravity_mps2: float, step_s: float) -> None:
     """Take in a sample.
 
     Args:
         felt: mean force 3, squared rate, squared force beside gravity: of the last `REMEMBERED_S`, the
-            squares no less than the sample's own; changed in place.
+            squares no less than the sample's own; mean force of the last `CHANGED_S` 3; for how long it
+            has been quiet (s); the last force 3, and its squared change to it: 13, changed in place.
         force: specific force, 3 (m/s²).
-        rate: angular rate, 3 (rad/s).
-        bias: of the gyros, 3 (rad/s).
+        rate: angular rate without its bias, 3 (rad/s).
         gravity_mps2: as the unit feels it.
         step_s: time from one sample to the next (s).
     """
-    new = 1.0 - np.exp(-step_s / REMEMBERED_S)
-    squared = turning = beside = 0.0
+    new, slow = 1.0 - np.exp(-step_s / REMEMBERED_S), 1.0 - np.exp(-step_s / CHANGED_S)
+    squared = turning = beside = changed = 0.0
     for c in range(3):
         felt[c] += new * (force[c] - felt[c])
+        felt[5 + c] += slow * (force[c] - felt[5 + c])
+        changed += (felt[c] - felt[5 + c]) ** 2
         squared += felt[c] * felt[c]
-        turning += (rate[c] - bias[c]) ** 2
+        turning += rate[c] ** 2
     mean = np.sqrt(squared)
     scale = gravity_mps2 / max(mean, 1e-9)
     for c in range(3):
@@ -53,6 +59,12 @@ def felt_by(felt: Array, force: Array, rate: Array, bias: Array, gravity_mps2: f
     beside = max(beside, (mean - gravity_mps2) ** 2)
     felt[3] = max(turning, felt[3] + new * (turning - felt[3]))
     felt[4] = max(beside, felt[4] + new * (beside - felt[4]))
+    quiet = changed < QUIET_MPS2**2 and felt[3] < QUIET_RADPS**2
+    felt[QUIET] = felt[QUIET] + step_s if quiet else 0.0
+    felt[JERKED] = 0.0
+    for c in range(3):
+        felt[JERKED] += (force[c] - felt[LAST + c]) ** 2
+        felt[LAST + c] = force[c]
 
 
 @njit(cache=True, error_model="numpy")

@@ -1,83 +1,191 @@
-"""Inertial navigation of a boot, held by its own standstills: a filter of the errors of a strapdown system.
+"""Inertial navigation: what accelerometers and gyros tell, summed up to attitude, velocity and place.
 
-What the gyros and accelerometers tell is summed up to attitude, velocity and place. Each time that the boot
-stands, its velocity is known to be nearly nil (ZUPT; Foxlin 2005, paper C): an extended Kalman filter of nine
-errors, of place, velocity and attitude, then corrects all three, and with them the step just made. Paper C
-corrects velocities in retrospect along a line; the covariances of the filter do that here.
+With it goes the covariance of its errors, those of the sensors' biases among them (Foxlin 2005; Titterton and
+Weston, Strapdown Inertial Navigation Technology).
 """
 
 import numpy as np
 from numba import njit
 
 from estimator.graph.dense import Array
-from estimator.inertial.boot import ERRORS, GRAVITY, RISE_M, Strapdown
-from estimator.inertial.holding import hold
-from estimator.inertial.levelling import gather
-from estimator.inertial.rotations import turn_by
-from estimator.inertial.stance import felt_by
+from estimator.inertial.boot import (
+    ATTITUDE,
+    ERRORS,
+    FORCE,
+    RATE,
+    SCALE,
+    VELOCITY,
+    Strapdown,
+)
+from estimator.inertial.rotations import turn_by, turned_about
 
 VELOCITY_WALK = 0.01
 """Of a small MEMS accelerometer, 0.1 to 1 mg per root hertz, in m/s per root second."""
 ATTITUDE_WALK = 1e-3
 """Of its gyro with what its scale and the blow of a heel do to it: 0.06° per root second."""
+FORCE_SIGMA_MPS2, SCALE_SIGMA = 0.1, 0.02
+"""Bias of a small accelerometer, and how much its scale is off."""
+FORGOTTEN_PER_RAD = 0.1
+"""What an accelerometer is off by is another bias after ten radians: its axes are not quite square."""
+BETWEEN = 0.3
+"""What a force may be off by between two samples, as a share of what it changes by."""
+RATE_WALK = 1e-4
+"""Of a gyro's bias, in rad/s per root second."""
 
 
 @njit(cache=True, error_model="numpy")
-def advance(boot: Strapdown, force: Array, rate: Array, step_s: float) -> int:
-    """Sum up samples, hold them by the standstills among them, and level what has not been levelled yet.
+def freed(boot: Strapdown, force: Array, rate: Array, found: Array) -> None:
+    """A sample without what its sensors are known to be off by.
+
+    Args:
+        boot: what knows that.
+        force: specific force, 3 (m/s²).
+        rate: angular rate, 3 (rad/s).
+        found: takes both, 6.
+    """
+    for c in range(3):
+        found[c] = (force[c] - boot.sensors[c]) * (1.0 - boot.sensors[3 + c])
+        found[3 + c] = rate[c] - boot.sensors[6 + c]
+
+
+@njit(cache=True, error_model="numpy")
+def carry(boot: Strapdown, sample: Array, gravity_mps2: float, size: int, step_s: float) -> None:
+    """Take in a sample.
 
     Args:
         boot: changed in place.
-        force: specific force, m × 3 (m/s²).
-        rate: angular rate, m × 3 (rad/s).
-        step_s: time from one sample to the next (s).
-
-    Returns:
-        How many samples it has taken: all, or those up to where it was levelled.
+        sample: specific force (m/s²) and angular rate (rad/s) as `freed` leaves them, 6.
+        gravity_mps2: as it is felt.
+        size: how many of the errors are states: all, or 9, where its sensors are taken for perfect.
+        step_s: time from the last sample to this one (s).
     """
     angle, halfway, ahead = np.empty(3), np.empty((3, 3)), np.empty(3)
-    for i in range(len(force)):
-        felt_by(boot.felt, force[i], rate[i], boot.bias, boot.known[GRAVITY], step_s)
-        if boot.told[0] >= 0.0:
-            gather(boot, force[i], rate[i], step_s)
-            if boot.told[0] < 0.0:
-                return i + 1
-            continue
-        for c in range(3):
-            angle[c] = 0.5 * step_s * (rate[i, c] - boot.bias[c])
-        turn_by(angle, boot.attitude, halfway)
-        turn_by(angle, halfway, boot.attitude)
-        for r in range(3):
-            ahead[r] = halfway[r, 0] * force[i, 0] + halfway[r, 1] * force[i, 1] + halfway[r, 2] * force[i, 2]
-        _spread(boot.covariance, ahead, step_s)
-        ahead[2] -= boot.known[GRAVITY]
-        boot.footing[RISE_M] += step_s * (boot.velocity[2] + 0.5 * step_s * ahead[2])
-        for c in range(3):
-            boot.place[c] += step_s * (boot.velocity[c] + 0.5 * step_s * ahead[c])
-            boot.velocity[c] += step_s * ahead[c]
-        hold(boot, ahead, step_s)
-    return len(force)
+    squared = 0.0
+    for c in range(3):
+        angle[c] = 0.5 * step_s * sample[3 + c]
+        squared += angle[c] * angle[c]
+    turn_by(angle, boot.attitude, halfway)
+    turn_by(angle, halfway, boot.attitude)
+    for r in range(3):
+        ahead[r] = halfway[r, 0] * sample[0] + halfway[r, 1] * sample[1] + halfway[r, 2] * sample[2]
+    kept = np.exp(-2.0 * FORGOTTEN_PER_RAD * np.sqrt(squared))
+    _spread(boot.covariance, halfway, ahead, sample, kept, size, step_s)
+    ahead[2] -= gravity_mps2
+    for c in range(3):
+        boot.place[c] += step_s * (boot.velocity[c] + 0.5 * step_s * ahead[c])
+        boot.velocity[c] += step_s * ahead[c]
+        if size == ERRORS:
+            boot.sensors[c] *= kept
 
 
 @njit(cache=True, error_model="numpy")
-def _spread(covariance: Array, force: Array, step_s: float) -> None:
-    """Covariance after a sample: F P Fᵀ + Q, of p' = p + v Δt and v' = v − [f]× φ Δt, in place."""
-    tilted = np.zeros((3, 3))
+def _spread(
+    covariance: Array, attitude: Array, force: Array, sample: Array, kept: float, size: int, step_s: float
+) -> None:
+    """Covariance after a sample: F P Fᵀ + Q, in place.
+
+    Place moves by v Δt, velocity by −([f]× φ + A b + A diag(s) f) Δt, attitude by −A g Δt; b, the bias of
+    accelerometers, is partly another one after a turn; g, that of gyros, walks.
+    """
+    tilted, turned, scaled = np.zeros((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     tilted[0, 1], tilted[0, 2] = step_s * force[2], -step_s * force[1]
     tilted[1, 0], tilted[1, 2] = -step_s * force[2], step_s * force[0]
     tilted[2, 0], tilted[2, 1] = step_s * force[1], -step_s * force[0]
-    for c in range(ERRORS):
+    for r in range(3):
+        for c in range(3):
+            turned[r, c] = -step_s * attitude[r, c]
+            scaled[r, c] = turned[r, c] * sample[c]
+    for c in range(size):
         for r in range(3):
-            covariance[r, c] += step_s * covariance[3 + r, c]
+            covariance[r, c] += step_s * covariance[VELOCITY + r, c]
         for r in range(3):
             for j in range(3):
-                covariance[3 + r, c] += tilted[r, j] * covariance[6 + j, c]
-    for r in range(ERRORS):
+                covariance[VELOCITY + r, c] += tilted[r, j] * covariance[ATTITUDE + j, c]
+        if size < ERRORS:
+            continue
+        for r in range(3):
+            for j in range(3):
+                covariance[VELOCITY + r, c] += turned[r, j] * covariance[FORCE + j, c]
+                covariance[VELOCITY + r, c] += scaled[r, j] * covariance[SCALE + j, c]
+                covariance[ATTITUDE + r, c] += turned[r, j] * covariance[RATE + j, c]
+        for r in range(3):
+            covariance[FORCE + r, c] *= kept
+    for r in range(size):
+        row = covariance[r]
         for c in range(3):
-            covariance[r, c] += step_s * covariance[r, 3 + c]
+            row[c] += step_s * row[VELOCITY + c]
         for c in range(3):
             for j in range(3):
-                covariance[r, 3 + c] += tilted[c, j] * covariance[r, 6 + j]
+                row[VELOCITY + c] += tilted[c, j] * row[ATTITUDE + j]
+        if size < ERRORS:
+            continue
+        for c in range(3):
+            for j in range(3):
+                row[VELOCITY + c] += turned[c, j] * row[FORCE + j] + scaled[c, j] * row[SCALE + j]
+                row[ATTITUDE + c] += turned[c, j] * row[RATE + j]
+        for c in range(3):
+            row[FORCE + c] *= kept
     for c in range(3):
-        covariance[3 + c, 3 + c] += VELOCITY_WALK**2 * step_s
-        covariance[6 + c, 6 + c] += ATTITUDE_WALK**2 * step_s
+        covariance[VELOCITY + c, VELOCITY + c] += VELOCITY_WALK**2 * step_s
+        covariance[ATTITUDE + c, ATTITUDE + c] += ATTITUDE_WALK**2 * step_s
+        if size == ERRORS:
+            covariance[FORCE + c, FORCE + c] += FORCE_SIGMA_MPS2**2 * (1.0 - kept * kept)
+            covariance[RATE + c, RATE + c] += RATE_WALK**2 * step_s
+
+
+@njit(cache=True, error_model="numpy")
+def blow(boot: Strapdown, jerked_m2ps4: float, step_s: float) -> None:
+    """Doubt a velocity by what a force may have been between two samples, where it changes fast.
+
+    Args:
+        boot: its covariance is changed in place.
+        jerked_m2ps4: squared change of the force from one sample to the next (m²/s⁴).
+        step_s: time between them (s).
+    """
+    for c in range(VELOCITY, ATTITUDE):
+        boot.covariance[c, c] += (BETWEEN * step_s) ** 2 * jerked_m2ps4
+
+
+@njit(cache=True, error_model="numpy")
+def correct(covariance: Array, error: Array, state: int, value: float, sigma: float) -> None:
+    """Take in that a state's error is `value`, but for `sigma`.
+
+    Args:
+        covariance: of the errors, 18 × 18; changed in place.
+        error: takes by what all are to be corrected, 18; what has been found before among them.
+        state: index among the errors.
+        value: what the state is told to be off by.
+        sigma: standard deviation of that.
+    """
+    variance = covariance[state, state] + sigma * sigma
+    gain = covariance[:, state] / variance
+    missed = value - error[state]
+    for r in range(ERRORS):
+        error[r] += gain[r] * missed
+    for r in range(ERRORS):
+        for c in range(ERRORS):
+            covariance[r, c] -= gain[r] * gain[c] * variance
+
+
+@njit(cache=True, error_model="numpy")
+def mend(boot: Strapdown, error: Array) -> None:
+    """Take out errors that have been found, 18."""
+    for c in range(3):
+        boot.place[c] += error[c]
+        boot.velocity[c] += error[VELOCITY + c]
+    for c in range(9):
+        boot.sensors[c] += error[FORCE + c]
+    boot.attitude[:] = turned_about(error[ATTITUDE:FORCE], boot.attitude)
+
+
+@njit(cache=True, error_model="numpy")
+def stand_still(boot: Strapdown, error: Array, sigma_mps: float) -> None:
+    """Take in that a boot stands, but for `sigma_mps` along each axis (ZUPT): their errors are independent.
+
+    Args:
+        boot: its covariance is changed in place.
+        error: takes by what it is to be corrected, 18.
+        sigma_mps: how fast it may be all the same (m/s).
+    """
+    for axis in range(3):
+        correct(boot.covariance, error, VELOCITY + axis, -boot.velocity[axis], sigma_mps)

@@ -10,6 +10,8 @@ from estimator.inertial.boot import GRAVITY_MPS2
 from estimator.measurements.imu import Imu
 
 STEP_S = 0.005
+HALF_S = 0.5 * STEP_S
+"""Truth is told twice as finely: samples lie between the epochs at which it is."""
 STANCE_S, SWING_S = 0.6, 0.5
 STEEPEST_RAD = 0.7
 LIFTED_M = 0.12
@@ -79,39 +81,42 @@ def walked(
         rests_s: how long it rests.
     """
     fine = _way(strides, heading_rad, rests_s)
-    # Twice as fine: samples lie between the epochs at which the truth is told.
-    places, attitudes = (
-        fine[:, :3],
-        Rotation.from_euler("ZY", fine[:, 3:5]) * (mounted or Rotation.identity()),
-    )
-    half = 0.5 * STEP_S
-    second = (places[2:] - 2.0 * places[1:-1] + places[:-2]) / half**2
-    felt = second + np.array([0.0, 0.0, GRAVITY_MPS2])
-    force = attitudes[1:-1].inv().apply(felt)[::2]
+    attitudes = Rotation.from_euler("ZY", fine[:, 3:5]) * (mounted or Rotation.identity())
+    return felt(fine[:, :3], attitudes, start_t, float(fine[-1, 3]))
+
+
+def felt(places: Array, attitudes: Rotation, start_t: float, heading_rad: float) -> Gait:
+    """What an inertial unit feels that goes through places and attitudes, half a step after each other."""
+    second = (places[2:] - 2.0 * places[1:-1] + places[:-2]) / HALF_S**2
+    force = attitudes[1:-1].inv().apply(second + np.array([0.0, 0.0, GRAVITY_MPS2]))[::2]
     turned = (attitudes[:-2].inv() * attitudes[2:]).as_rotvec() / STEP_S
     t: Array = start_t + STEP_S * np.arange(len(force), dtype=np.float64)
-    return Gait(t, force, turned[::2], places[2::2][: len(force)] - places[0], float(fine[-1, 3]))
+    return Gait(t, force, turned[::2], places[2::2][: len(force)] - places[0], heading_rad)
+
+
+def smooth(share: Array) -> Array:
+    """From 0 to 1: its first two derivatives are nil at both ends, as are those of what is made of it."""
+    found: Array = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+    return found
 
 
 def _way(strides: list[Stride], heading_rad: float, rests_s: float) -> Array:
     """Place, heading and pitch at each half step, k × 5."""
-    half = 0.5 * STEP_S
     here = np.array([0.0, 0.0, 0.0, heading_rad, 0.0])
-    parts = [np.tile(here, (round(rests_s / half), 1))]
-    share = np.arange(1, round(SWING_S / half) + 1) / round(SWING_S / half)
-    # Its first two derivatives are nil at both ends, as are those of what is made of it.
-    smooth = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+    parts = [np.tile(here, (round(rests_s / HALF_S), 1))]
+    share = np.arange(1, round(SWING_S / HALF_S) + 1) / round(SWING_S / HALF_S)
+    eased = smooth(share)
     lifted = 64.0 * share**3 * (1.0 - share) ** 3
     for stride in strides:
         facing = here[3] + stride.turn_rad
         ahead = np.array([np.cos(facing), np.sin(facing)]) * stride.length_m
         there = here + np.array([*ahead, stride.up_m, stride.turn_rad, 0.0])
-        swing = here + smooth[:, None] * (there - here)
+        swing = here + eased[:, None] * (there - here)
         swing[:, 2] += LIFTED_M * lifted
         swing[:, 4] = STEEPEST_RAD * lifted * np.cos(np.pi * share)
-        parts += [swing, np.tile(there, (round(STANCE_S / half), 1))]
+        parts += [swing, np.tile(there, (round(STANCE_S / HALF_S), 1))]
         here = there
-    parts.append(np.tile(here, (round(rests_s / half), 1)))
+    parts.append(np.tile(here, (round(rests_s / HALF_S), 1)))
     return np.concatenate(parts)
 
 

@@ -9,7 +9,7 @@ from tests.estimator.inertial.gait import STANCE_S, STEP_S, SWING_S, Stride, wal
 def sigmas(force: np.ndarray, rate: np.ndarray) -> np.ndarray:
     felt, found = BEFORE.copy(), []
     for one, other in zip(force, rate, strict=True):
-        felt_by(felt, one, other, np.zeros(3), 9.80665, STEP_S)
+        felt_by(felt, one, other, 9.80665, STEP_S)
         found.append(stance_sigma(felt, ALIKE_S))
     return np.array(found)
 
@@ -41,6 +41,6 @@ def test_standstills_near_to_each_other_count_once() -> None:
     gait = walked([])
     felt = BEFORE.copy()
     for force, rate in zip(gait.force, gait.rate, strict=True):
-        felt_by(felt, force, rate, np.zeros(3), 9.80665, STEP_S)
+        felt_by(felt, force, rate, 9.80665, STEP_S)
     assert np.isinf(stance_sigma(felt, 0.5 * ALIKE_S))
     assert np.isfinite(stance_sigma(felt, ALIKE_S))

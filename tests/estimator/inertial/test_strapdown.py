@@ -1,86 +1,109 @@
-"""A boot's navigation: where it leads, and how well it knows that."""
+"""Strapdown navigation: its errors spread as its linear model says, and what is told of them is taken in."""
 
 import numpy as np
 import pytest
+from scipy.linalg import block_diag
 from scipy.spatial.transform import Rotation
 
-from estimator.inertial.boot import HELD_S, Strapdown
-from estimator.inertial.strapdown import ATTITUDE_WALK, VELOCITY_WALK, advance
-from tests.estimator.inertial.gait import AROUND, STEP_S, Gait, Stride, walked
+from estimator.graph.dense import Array
+from estimator.inertial.boot import ATTITUDE, ERRORS, FORCE, GRAVITY_MPS2, RATE, SCALE, VELOCITY, Strapdown
+from estimator.inertial.strapdown import (
+    ATTITUDE_WALK,
+    FORCE_SIGMA_MPS2,
+    FORGOTTEN_PER_RAD,
+    RATE_WALK,
+    VELOCITY_WALK,
+    carry,
+    correct,
+    freed,
+    mend,
+    stand_still,
+)
+from tests.estimator.inertial.gait import STEP_S, Stride, walked
+
+SWING = slice(420, 470)
 
 
-def led(gait: Gait, heading_rad: float = 0.0) -> Strapdown:
-    boot, done = Strapdown.new(heading_rad), 0
-    while done < len(gait.force):
-        done += advance(boot, gait.force[done:], gait.rate[done:], STEP_S)
+def unsure(chance: np.random.Generator) -> Strapdown:
+    """A navigation whose errors hang together, and whose sensors are known to be off."""
+    boot = Strapdown.new()
+    root = chance.normal(0.0, 0.05, (ERRORS, ERRORS))
+    boot.covariance[:] = root @ root.T
+    boot.sensors[:] = chance.normal(0.0, 0.02, 9)
+    boot.velocity[:] = chance.normal(0.0, 0.5, 3)
     return boot
 
 
-def test_samples_without_errors_lead_along_the_way_and_up_the_stair() -> None:
-    gait = walked(AROUND)
-    boot = led(gait)
-    np.testing.assert_allclose(boot.place, gait.place_m[-1], atol=0.005 * 22.0)
-    assert boot.heading_rad == pytest.approx(gait.heading_rad, abs=0.01)
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_a_small_unit_is_a_hundredth_of_the_way_off(seed: int) -> None:
-    gait = walked(AROUND).noisy(np.random.default_rng(seed))
-    boot = led(gait)
-    assert np.linalg.norm(boot.place - gait.place_m[-1]) < 0.015 * 22.0
-    assert np.linalg.norm(boot.velocity) < 0.02
-
-
-@pytest.mark.parametrize("angle_rad", [(0.0, 0.5, 0.0), (np.pi, 0.0, 0.0), (0.3, -1.2, 0.4)])
-def test_however_the_unit_is_mounted(angle_rad: tuple[float, float, float]) -> None:
-    """The frame's x axis is what the sensor's x axis faces at rest, seen from above."""
-    mounted = Rotation.from_rotvec(angle_rad)
-    faced = mounted.apply([1.0, 0.0, 0.0])
-    gait = walked(AROUND, mounted=mounted)
-    boot = led(gait, heading_rad=float(np.arctan2(faced[1], faced[0])))
-    np.testing.assert_allclose(boot.place, gait.place_m[-1], atol=0.005 * 22.0)
-
-
-@pytest.mark.parametrize("times", [1.0, 3.0])
-def test_what_gyros_at_rest_tell_is_taken_for_their_bias(times: float) -> None:
-    gait, bias = walked([Stride()] * 5), times * np.array([0.01, -0.02, 0.015])
-    boot = led(gait._replace(rate=gait.rate + bias))
-    np.testing.assert_allclose(boot.bias, bias, atol=1e-6)
-    np.testing.assert_allclose(boot.place, gait.place_m[-1], atol=0.005 * 6.5)
+def carried(boot: Strapdown, force: Array, rate: Array) -> None:
+    sample = np.empty(6)
+    for one, other in zip(force, rate, strict=True):
+        freed(boot, one, other, sample)
+        carry(boot, sample, GRAVITY_MPS2, ERRORS, STEP_S)
 
 
 def test_the_covariance_of_errors_is_that_of_its_linear_model() -> None:
-    """F P Fᵀ + Q by whole matrices, while nothing holds a boot that swings."""
-    gait = walked([Stride()])
-    swing = slice(420, 470)
-    boot = Strapdown.new(0.0)
-    advance(boot, gait.force[:100], gait.rate[:100], STEP_S)
-    advance(boot, gait.force[100:420], gait.rate[100:420], STEP_S)
-    expected, attitude = boot.covariance.copy(), Rotation.from_matrix(boot.attitude)
-    for force, rate in zip(gait.force[swing], gait.rate[swing], strict=True):
-        f = (attitude * Rotation.from_rotvec(0.5 * STEP_S * (rate - boot.bias))).apply(force)
-        attitude = attitude * Rotation.from_rotvec(STEP_S * (rate - boot.bias))
-        tilt, drift = np.eye(9), np.eye(9)
-        tilt[3:6, 6:9] = -STEP_S * np.array([[0, -f[2], f[1]], [f[2], 0, -f[0]], [-f[1], f[0], 0]])
-        drift[0:3, 3:6] = STEP_S * np.eye(3)
-        noise = np.diag([0.0] * 3 + [VELOCITY_WALK**2 * STEP_S] * 3 + [ATTITUDE_WALK**2 * STEP_S] * 3)
-        # A place moves on with the velocity before the sample.
-        expected = tilt @ drift @ expected @ drift.T @ tilt.T + noise
-    boot.footing[HELD_S] = -1e9
-    advance(boot, gait.force[swing], gait.rate[swing], STEP_S)
-    np.testing.assert_allclose(boot.covariance, expected, rtol=1e-6, atol=1e-15)
+    """F P Fᵀ + Q by whole matrices, through a swing."""
+    gait, boot = walked([Stride()]), unsure(np.random.default_rng(1))
+    expected, attitude, sensors = boot.covariance.copy(), Rotation.identity(), boot.sensors.copy()
+    for force, rate in zip(gait.force[SWING], gait.rate[SWING], strict=True):
+        felt, turning = (force - sensors[:3]) * (1.0 - sensors[3:6]), rate - sensors[6:]
+        halfway = (attitude * Rotation.from_rotvec(0.5 * STEP_S * turning)).as_matrix()
+        attitude = attitude * Rotation.from_rotvec(STEP_S * turning)
+        f = halfway @ felt
+        kept = np.exp(-FORGOTTEN_PER_RAD * STEP_S * np.linalg.norm(turning))
+        model = np.eye(ERRORS)
+        model[:3, VELOCITY:ATTITUDE] = STEP_S * np.eye(3)
+        model[VELOCITY:ATTITUDE, ATTITUDE:FORCE] = -STEP_S * np.array(
+            [[0, -f[2], f[1]], [f[2], 0, -f[0]], [-f[1], f[0], 0]]
+        )
+        model[VELOCITY:ATTITUDE, FORCE:SCALE] = -STEP_S * halfway
+        model[VELOCITY:ATTITUDE, SCALE:RATE] = -STEP_S * halfway * felt
+        model[ATTITUDE:FORCE, RATE:] = -STEP_S * halfway
+        model[FORCE:SCALE, FORCE:SCALE] *= kept
+        walks = [0.0, VELOCITY_WALK**2, ATTITUDE_WALK**2, 0.0, 0.0, RATE_WALK**2]
+        noise = block_diag(*[STEP_S * each * np.eye(3) for each in walks])
+        noise[FORCE:SCALE, FORCE:SCALE] = FORCE_SIGMA_MPS2**2 * (1.0 - kept**2) * np.eye(3)
+        # Each state moves on with the others as they were before the sample.
+        expected = model @ expected @ model.T + noise
+        sensors[:3] *= kept
+    carried(boot, gait.force[SWING], gait.rate[SWING])
+    np.testing.assert_allclose(boot.covariance, expected, rtol=1e-6, atol=1e-12)
 
 
-def test_a_boot_that_never_stands_grows_unsure_of_its_speed() -> None:
-    gait = walked([Stride()] * 3)
-    boot = Strapdown.new(0.0)
-    advance(boot, gait.force[:100], gait.rate[:100], STEP_S)
-    advance(boot, gait.force[100:400], gait.rate[100:400], STEP_S)
-    told = [boot.covariance[3, 3]]
-    for _ in range(3):
-        rolls = np.tile([5.0, 0.0, 0.0], (200, 1))
-        advance(boot, np.tile([0.0, 0.0, 9.8], (200, 1)), rolls, STEP_S)
-        told.append(boot.covariance[3, 3])
-    assert told == sorted(told)
-    # Its accelerometer alone tells so much less of it; what its tilt does comes on top.
-    assert told[-1] - told[0] > 3.0 * VELOCITY_WALK**2
+@pytest.mark.parametrize("state", range(VELOCITY, ERRORS))
+def test_a_small_error_leads_where_its_linear_model_says(state: int) -> None:
+    """Finite differences: what is true less what is told, carried on by both; but for half a sample."""
+    gait, size = walked([Stride()]), 1e-6
+    told, true = Strapdown.new(), Strapdown.new()
+    error = np.zeros(ERRORS)
+    error[state] = size
+    mend(true, error)
+    told.covariance[:] = np.outer(error, error)
+    for boot in (told, true):
+        carried(boot, gait.force[SWING], gait.rate[SWING])
+    quiet = Strapdown.new()
+    carried(quiet, gait.force[SWING], gait.rate[SWING])
+    spread = told.covariance - quiet.covariance
+    column = spread[:, state] / np.sqrt(spread[state, state])
+    found = np.concatenate([true.place - told.place, true.velocity - told.velocity])
+    np.testing.assert_allclose(found, column[:ATTITUDE], rtol=2e-2, atol=6e-3 * size)
+
+
+def test_what_is_told_of_a_state_is_taken_in_as_by_bayes() -> None:
+    """The information form: the inverse covariance gains what is told."""
+    boot = unsure(np.random.default_rng(2))
+    before, error = boot.covariance.copy(), np.zeros(ERRORS)
+    correct(boot.covariance, error, 7, 0.3, 0.1)
+    row = np.zeros(ERRORS)
+    row[7] = 10.0
+    information = np.linalg.inv(before) + np.outer(row, row)
+    np.testing.assert_allclose(boot.covariance, np.linalg.inv(information), rtol=1e-6, atol=1e-10)
+    np.testing.assert_allclose(error, np.linalg.solve(information, row * 3.0), rtol=1e-6, atol=1e-10)
+
+
+def test_who_stands_has_no_velocity() -> None:
+    boot, error = unsure(np.random.default_rng(3)), np.zeros(ERRORS)
+    stand_still(boot, error, 1e-4)
+    mend(boot, error)
+    assert np.abs(boot.velocity).max() < 1e-3
+    assert np.abs(boot.covariance[VELOCITY:ATTITUDE, VELOCITY:ATTITUDE]).max() < 1e-7

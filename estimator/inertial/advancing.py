@@ -1,0 +1,53 @@
+"""Samples of a boot, one after the other: a strapdown system that is held by its own standstills.
+
+Each time that the boot stands, its velocity is known to be nearly nil (ZUPT; Foxlin 2005, paper C): an
+extended Kalman filter of its errors then corrects all of them, and with them the step just made. Paper C
+corrects velocities in retrospect along a line; the covariances of the filter do that here.
+"""
+
+import numpy as np
+from numba import njit
+
+from estimator.graph.dense import Array
+from estimator.inertial.boot import ERRORS, FORCE, GRAVITY, GRAVITY_MPS2, SINCE_S, Boot
+from estimator.inertial.holding import hold
+from estimator.inertial.levelling import gather
+from estimator.inertial.loose import branch, loosen
+from estimator.inertial.resting import rest
+from estimator.inertial.stance import JERKED, felt_by
+from estimator.inertial.strapdown import blow, carry, freed
+
+
+@njit(cache=True, error_model="numpy")
+def advance(boot: Boot, force: Array, rate: Array, step_s: float) -> int:
+    """Sum up samples, hold them by the standstills among them, and level what has not been levelled yet.
+
+    Args:
+        boot: changed in place.
+        force: specific force, m × 3 (m/s²).
+        rate: angular rate, m × 3 (rad/s).
+        step_s: time from one sample to the next (s).
+
+    Returns:
+        How many samples it has taken: all, or those up to where it was levelled.
+    """
+    sample, other = np.empty(6), np.empty(6)
+    for i in range(len(force)):
+        freed(boot.held, force[i], rate[i], sample)
+        felt_by(boot.felt, sample[:3], sample[3:], boot.known[GRAVITY], step_s)
+        if boot.told[0] >= 0.0:
+            gather(boot, force[i], rate[i], step_s)
+            if boot.told[0] < 0.0:
+                branch(boot)
+                return i + 1
+            continue
+        freed(boot.free, force[i], rate[i], other)
+        carry(boot.held, sample, boot.known[GRAVITY], FORCE, step_s)
+        carry(boot.free, other, GRAVITY_MPS2, ERRORS, step_s)
+        blow(boot.free, boot.felt[JERKED], step_s)
+        rest(boot, rate[i], step_s)
+        boot.loose[SINCE_S] += step_s
+        sigma_mps = hold(boot, step_s)
+        if not np.isinf(sigma_mps):
+            loosen(boot, sigma_mps)
+    return len(force)
