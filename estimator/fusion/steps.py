@@ -13,6 +13,7 @@ from estimator.fusion.silence import LONGEST_S
 from estimator.fusion.standing import stand_on
 from estimator.fusion.way import Mark
 from estimator.inertial.navigation import Led
+from estimator.inertial.resting import GRANTED_RADPS
 from estimator.measurements.displacement import Displacement
 
 TRAIL_S = 4.0
@@ -90,8 +91,14 @@ class Step:
             across, up = across + length**2, up + length**2
         still = own > 0.0 and length < physics.STILL_MPS * own and start <= pose_t
         turn = self._stand(reading, still)
-        up += (physics.SCALE_SIGMA * u) ** 2 + (reading.up_m2 if isinstance(reading, Led) else 0.0)
+        up += (physics.SCALE_SIGMA * u) ** 2
+        if isinstance(reading, Led):
+            up += reading.up_m2
+            if reading.rested:
+                turn = Single(self.node.unit, 1, 0.0, GRANTED_RADPS, physics.TURN_NOISE)
         noise = walk_noise((across, across, up), reading.sigma_m, length, duration)
+        if isinstance(reading, Led):
+            noise = sum_of(noise, (0.0, 0.0, 0.0, 0.0, reading.bias_rad2ps2, 0.0))
         if own > 0.0:
             self._speed_mps = math.hypot(e, n) / own
         self._pose_t = self._unit_t = t

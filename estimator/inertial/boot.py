@@ -20,7 +20,7 @@ HELD_S, STOOD, FOOTHOLD_M, FLAT_M, FLAT_M2 = range(5)
 """What `footing` holds."""
 BRANCHED_M, APART_M, GLIDES_MPS, GLID_M, MOVED_M2, SINCE_S, RESTLESS_S = 0, 3, 5, 7, 9, 11, 12
 """Where each begins in `loose`."""
-RATES, SQUARES, SECONDS, BIAS_RADPS, UNRESTED_S = 0, 3, 4, 5, 6
+RATES, SQUARES, SECONDS, BIAS_RADPS, CHANGED, RESTED_S = 0, 3, 4, 5, 6, 7
 """Where each begins in `gyros`."""
 
 
@@ -67,7 +67,8 @@ class Boot(NamedTuple):
             how far that may have led (m); and what all this adds to the variance of its place (m²). How long
             ago `free` began (s); for how long it has seemed to stand, but not to rest (s): 13.
         gyros: what they have reported in this rest, summed up: rates 3, their squares, seconds; how well
-            their biases are known (rad/s); and how long ago a rest has told them (s): 7.
+            their biases are known (rad/s); what the bias of its heading is less sure by than any unit's
+            ((rad/s)²); and how long ago a rest has told it, if that is still to be said (s): 8.
     """
 
     held: Strapdown
@@ -90,7 +91,7 @@ class Boot(NamedTuple):
             np.array([GRAVITY_MPS2, heading_rad, 0.0, 0.0]),
             np.zeros(5),
             np.zeros(13),
-            np.zeros(7),
+            np.zeros(8),
         )
 
     def anew(self) -> Self:

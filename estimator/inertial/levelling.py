@@ -9,6 +9,7 @@ from estimator.inertial.boot import (
     AXIS,
     AZIMUTH,
     BIAS_RADPS,
+    CHANGED,
     ERRORS,
     FORCE,
     GRAVITY,
@@ -20,7 +21,7 @@ from estimator.inertial.boot import (
     Boot,
     Strapdown,
 )
-from estimator.inertial.resting import RESTED_RADPS, UNRESTED_RADPS
+from estimator.inertial.resting import GRANTED_RADPS, RESTED_RADPS, UNRESTED_RADPS
 from estimator.inertial.rotations import level
 from estimator.inertial.strapdown import FORCE_SIGMA_MPS2, SCALE_SIGMA, mend
 
@@ -82,6 +83,7 @@ def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
         boot.gyros[BIAS_RADPS] = RESTED_RADPS
     elif boot.gyros[BIAS_RADPS] == 0.0:
         boot.gyros[BIAS_RADPS] = UNRESTED_RADPS
+        boot.gyros[CHANGED] = UNRESTED_RADPS**2 - GRANTED_RADPS**2
     held.attitude[:] = level(mean, int(boot.known[AXIS]), boot.known[HEADING] + boot.known[AZIMUTH])
     for axis in range(2):
         if abs(held.attitude[2, axis]) <= abs(held.attitude[2, 1 - axis]):

@@ -52,6 +52,8 @@ STRIDE_S = 2.0
 """What has been apart for less may be one stride, which both have followed differently."""
 DOUBTED = 3.0
 """Held by what seems to be a standstill each time, a navigation believes more of itself than is true."""
+TILTED_S = 1.0
+"""From one stride to the next standstills hold a tilt: so long a bias of gyros turns it."""
 CARRIED_MPS = 10.0
 """Nobody is carried faster: his unit measures something else."""
 LOST_MPS = 1.0
@@ -168,7 +170,8 @@ def _lose(boot: Boot) -> None:
     free.velocity[:] = held.velocity
     free.attitude[:] = held.attitude
     free.sensors[:6], free.sensors[6:] = 0.0, held.sensors[6:]
-    doubt(free, held.attitude[2] * GRAVITY_MPS2, 0.0, LEVEL_SIGMA_RAD[0], boot.gyros[BIAS_RADPS])
+    tilt_rad = LEVEL_SIGMA_RAD[0] + boot.gyros[BIAS_RADPS] * TILTED_S
+    doubt(free, held.attitude[2] * GRAVITY_MPS2, 0.0, tilt_rad, boot.gyros[BIAS_RADPS])
     known = held.covariance[VELOCITY:FORCE, VELOCITY:FORCE]
     free.covariance[VELOCITY:FORCE, VELOCITY:FORCE] += DOUBTED**2 * known
     branch(boot)

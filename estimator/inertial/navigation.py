@@ -9,16 +9,18 @@ from estimator.graph.dense import Array
 from estimator.inertial.advancing import advance
 from estimator.inertial.boot import (
     ATTITUDE,
+    CHANGED,
     FLAT_M2,
     FOOTHOLD_M,
     FORCE,
     GRAVITY_MPS2,
     MOVED_M2,
+    RESTED_S,
     VELOCITY,
     Boot,
 )
 from estimator.inertial.loose import tell
-from estimator.inertial.resting import turned_rad2
+from estimator.inertial.resting import TOLD_AFTER_S
 from estimator.inertial.samples import Samples
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.imu import RATE_MIN_HZ
@@ -52,9 +54,14 @@ class Led(Displacement, tag="led", frozen=True):
 
     Attributes:
         up_m2: variance of its height beside `sigma_m`, as floors may not be flat (m²).
+        bias_rad2ps2: variance that the bias of its heading takes: it has begun without a rest, or a rest has
+            told that it was another one ((rad/s)²).
+        rested: a rest has, some seconds ago: it is nearly nil now.
     """
 
     up_m2: float = 0.0
+    bias_rad2ps2: float = 0.0
+    rested: bool = False
 
 
 class Navigation(NamedTuple):
@@ -91,8 +98,7 @@ class Navigated(NamedTuple):
     Attributes:
         navigation: after it.
         displacements: in order of epoch, in the frame whose x axis the boot faced at the start.
-        turned_rad2: variance that its heading takes by samples that are missing, or may be, before it, and
-            by gyros whose bias no rest has told (rad²).
+        turned_rad2: variance of its heading by samples that are missing, or may be, before it (rad²).
         text: why samples could not be used, if they could not.
     """
 
@@ -123,7 +129,7 @@ def navigate(before: Navigation | None, piece: Samples, heading_rad: float) -> N
         off_s = 0.0
     samples, known, turned = _joined(known, off_s, step_s, samples)
     found, after, told = _led(known, piece.node, samples, step_s)
-    return Navigated(after, found, turned + turned_rad2(known.boot, after.boot), told)
+    return Navigated(after, found, turned, told)
 
 
 def _joined(
@@ -194,7 +200,9 @@ def _led(
             boot.footing[FOOTHOLD_M] -= boot.held.place[2]
             boot.held.place[:] = 0.0
             boot.footing[FLAT_M2] = 0.0
-            boot.loose[MOVED_M2 : MOVED_M2 + 2] = 0.0
+            boot.loose[MOVED_M2 : MOVED_M2 + 2] = boot.gyros[CHANGED] = 0.0
+            if boot.gyros[RESTED_S] > TOLD_AFTER_S:
+                boot.gyros[RESTED_S] = 0.0
     end_t = known.t + len(force) * step_s
     return found, known._replace(t=end_t, told_t=told_t, unsure_m2=unsure_m2, boot=boot), text
 
@@ -220,4 +228,6 @@ def _displacement(boot: Boot, node: str, from_t: float, t: float, unsure_m2: flo
         heading_rad=boot.heading_rad,
         sigma_m=math.sqrt(way_m2 + speed_m2 + moved_m2 + unsure_m2) + 1e-6,
         up_m2=float(boot.footing[FLAT_M2]) + max(lifted_m2 - moved_m2, 0.0),
+        bias_rad2ps2=float(boot.gyros[CHANGED]),
+        rested=bool(boot.gyros[RESTED_S] > TOLD_AFTER_S),
     )

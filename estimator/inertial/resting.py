@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from estimator.graph.dense import Array
-from estimator.inertial.boot import BIAS_RADPS, ERRORS, RATE, RATES, SECONDS, SQUARES, UNRESTED_S, Boot
+from estimator.inertial.boot import BIAS_RADPS, CHANGED, ERRORS, RATE, RATES, RESTED_S, SECONDS, SQUARES, Boot
 from estimator.inertial.stance import QUIET
 from estimator.inertial.strapdown import RATE_WALK, correct, mend
 
@@ -16,6 +16,11 @@ TREMBLES = 0.3
 """What is left of a tremble in its mean over a second, as a share."""
 RESTED_RADPS, UNRESTED_RADPS = 2e-3, 0.03
 """How well a bias is known after a rest, at best, and before the first one."""
+ANEW_RAD2PS2 = 1.0
+"""After a rest that has told another bias, that of a heading has nothing to do with what it was before."""
+TOLD_AFTER_S = 4.5
+"""A bias counts from one keyframe to the next, which are two seconds apart: the new one is told when it has
+begun for certain."""
 GRANTED_RADPS = 5e-3
 """What any PDR unit's gyro is off by: who fuses its displacements reckons with that."""
 
@@ -30,7 +35,8 @@ def rest(boot: Boot, rate: Array, step_s: float) -> None:
         step_s: time from one sample to the next (s).
     """
     gyros = boot.gyros
-    gyros[UNRESTED_S] += step_s
+    if gyros[RESTED_S] > 0.0:
+        gyros[RESTED_S] += step_s
     gyros[BIAS_RADPS] = np.sqrt(gyros[BIAS_RADPS] ** 2 + RATE_WALK**2 * step_s)
     if boot.felt[QUIET] == 0.0:
         gyros[:BIAS_RADPS] = 0.0
@@ -45,29 +51,22 @@ def rest(boot: Boot, rate: Array, step_s: float) -> None:
     tremble = max(gyros[SQUARES] / gyros[SECONDS] - np.dot(mean, mean), 0.0)
     gyros[:BIAS_RADPS] = 0.0
     if np.dot(mean, mean) < TURNING_RADPS**2:
-        _take(boot, mean, np.sqrt(RESTED_RADPS**2 + TREMBLES**2 * tremble))
+        _take(boot, mean, np.sqrt(RESTED_RADPS**2 + TREMBLES**2 * tremble), step_s)
 
 
 @njit(cache=True, error_model="numpy")
-def _take(boot: Boot, bias: Array, sigma_radps: float) -> None:
+def _take(boot: Boot, bias: Array, sigma_radps: float, step_s: float) -> None:
     """Take in what biases are (rad/s), but for `sigma_radps`."""
     gyros, error = boot.gyros, np.zeros(ERRORS)
     known2, told2 = gyros[BIAS_RADPS] ** 2, sigma_radps**2
+    changed2 = 0.0
     for c in range(3):
-        boot.held.sensors[6 + c] += (bias[c] - boot.held.sensors[6 + c]) * known2 / (known2 + told2)
+        change = (bias[c] - boot.held.sensors[6 + c]) * known2 / (known2 + told2)
+        boot.held.sensors[6 + c] += change
+        changed2 += change * change
         correct(boot.free.covariance, error, RATE + c, bias[c] - boot.free.sensors[6 + c], sigma_radps)
     mend(boot.free, error)
     gyros[BIAS_RADPS] = np.sqrt(known2 * told2 / (known2 + told2))
-    gyros[UNRESTED_S] = 0.0
-
-
-def turned_rad2(before: Boot, after: Boot) -> float:
-    """Variance of a boot's heading by biases that no rest has told yet, between two samples (rad²).
-
-    Args:
-        before: the boot at first.
-        after: the boot later.
-    """
-    unknown = max(float(after.gyros[BIAS_RADPS]) ** 2 - GRANTED_RADPS**2, 0.0)
-    since_s, until_s = float(before.gyros[UNRESTED_S]), float(after.gyros[UNRESTED_S])
-    return unknown * max(until_s**2 - since_s**2, 0.0)
+    if changed2 > RESTED_RADPS**2:
+        gyros[CHANGED] = ANEW_RAD2PS2
+        gyros[RESTED_S] = step_s

@@ -18,6 +18,7 @@ from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, outside
 from tests.estimator.inertial.gait import AROUND, STEP_S, Gait, Stride, walked
+from tests.estimator.inertial.moves import Moves
 
 START_T = 1000.0
 GAIT = walked(AROUND, START_T, heading_rad=0.7).noisy(np.random.default_rng(3))
@@ -247,3 +248,43 @@ def test_who_walks_down_a_gentle_slope_is_not_said_to_be_on_its_top_for_certain(
     assert off_m < 1.5 * math.sqrt(estimate.covariance_m2[5])
     assert level.covariance_m2[5] < 0.5**2
     assert estimate.covariance_m2[0] < 1.1 * level.covariance_m2[0]
+
+
+FACES_EAST = structs.replace(BEGINS, heading_rad=0.0)
+
+
+def later(gait: Gait) -> Gait:
+    return gait._replace(t=START_T + gait.t)
+
+
+@pytest.mark.parametrize("bias_radps", [-0.04, 0.04])
+@pytest.mark.parametrize("radio", [False, True])
+def test_who_walks_when_his_unit_is_switched_on_is_where_his_ellipse_says(
+    bias_radps: float, radio: bool
+) -> None:
+    """Nothing has told the biases of its gyros until he rests; then they are others than ranges had told."""
+    gait = later(Moves().walks(20).rests(3.0).walks(20).gait())
+    gait = gait._replace(rate=gait.rate + bias_radps)
+    more = [ANCHOR, *heard(gait, (0.0, 10.0, 1.0), 0.1, 0.5)] if radio else []
+    tracker = KirchhoffTracker()
+    tracker.fold([FACES_EAST, *more[:1]])
+    off = []
+    for reading in gait.readings():
+        until_t = reading.until_t
+        tracker.fold([reading, *(r for r in more[1:] if until_t - 1.0 < r.t <= until_t)])
+        estimate = shown(tracker)
+        off.append(outside(estimate.position_m, estimate.covariance_m2, truth_m(gait, estimate.t)))
+    # Of thirty pictures one may be farther off than its ellipse of 95 %.
+    assert max(off) < 13.8
+    assert np.median(off) < INSIDE
+
+
+def test_who_crawls_is_shown_where_he_is_all_the_time() -> None:
+    gait = later(Moves().rests(2.0).walks(4).kneels().crawls(30, 0.4, 0.7, 0.5, 0.02).rests(1.0).gait())
+    tracker = KirchhoffTracker()
+    tracker.fold([FACES_EAST])
+    for reading in gait.noisy(np.random.default_rng(4)).readings():
+        tracker.fold([reading])
+        estimate = shown(tracker)
+        assert estimate.position_m is not None
+        assert np.linalg.norm(np.array(estimate.position_m) - truth_m(gait, estimate.t)) < 1.0

@@ -214,5 +214,5 @@ def test_whatever_samples_say_displacements_are_numbers(seed: int, force: float,
     walks = [walked([Stride()] * 2, start_t=t) for t in (0.0, 12.0)]
     middle = broken._replace(t=walks[0].t[-1] + STEP_S + broken.t)
     found, _ = followed([*walks[0].readings(), *middle.readings(), *walks[1].readings()])
-    assert np.isfinite([[*d.delta_m, d.sigma_m, d.up_m2, d.heading_rad] for d in found]).all()
+    assert np.isfinite([[*d.delta_m, d.sigma_m or 0.0, d.up_m2, d.heading_rad or 0.0] for d in found]).all()
     assert np.linalg.norm(found[-1].delta_m) < 0.05

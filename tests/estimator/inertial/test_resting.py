@@ -5,9 +5,13 @@ import pytest
 
 from estimator.inertial.advancing import advance
 from estimator.inertial.boot import BIAS_RADPS, Boot
-from estimator.inertial.navigation import Navigation, navigate
-from estimator.inertial.resting import GRANTED_RADPS, RESTED_RADPS, UNRESTED_RADPS
-from estimator.inertial.samples import pieces
+from estimator.inertial.resting import (
+    ANEW_RAD2PS2,
+    GRANTED_RADPS,
+    RESTED_RADPS,
+    TOLD_AFTER_S,
+    UNRESTED_RADPS,
+)
 from tests.estimator.inertial.gait import STEP_S, Gait
 from tests.estimator.inertial.led import followed, true_m, where
 from tests.estimator.inertial.moves import Moves
@@ -26,16 +30,6 @@ def led(gait: Gait) -> Boot:
     return boot
 
 
-def turned_rad(gait: Gait) -> float:
-    """What the heading of a unit that sends it may have turned by, as is said (rad)."""
-    known: Navigation | None = None
-    variance = 0.0
-    for piece in pieces(gait.imu()):
-        done = navigate(known, piece, 0.0)
-        known, variance = done.navigation, variance + done.turned_rad2
-    return float(np.sqrt(variance))
-
-
 def test_who_walks_when_his_unit_is_switched_on_has_unknown_biases_until_he_rests() -> None:
     walks = biased(Moves().walks(10).gait())
     boot = led(walks)
@@ -45,13 +39,20 @@ def test_who_walks_when_his_unit_is_switched_on_has_unknown_biases_until_he_rest
     assert rests.gyros[BIAS_RADPS] < 1.1 * RESTED_RADPS
 
 
-def test_what_his_heading_may_have_turned_by_meanwhile_is_said() -> None:
-    """It turns by the bias times the time, which is no random walk."""
-    walks = biased(Moves().walks(20).gait())
-    expected = np.sqrt(UNRESTED_RADPS**2 - GRANTED_RADPS**2) * (walks.t[-1] - 0.5)
-    assert turned_rad(walks) == pytest.approx(expected, rel=0.05)
-    rested = biased(Moves().rests(2.0).walks(20).gait())
-    assert turned_rad(rested) == 0.0
+def test_a_bias_that_no_rest_has_told_is_unknown_and_another_one_afterwards() -> None:
+    found, _ = followed(biased(Moves().walks(10).rests(3.0).walks(6).gait()).readings())
+    assert found[0].bias_rad2ps2 == pytest.approx(UNRESTED_RADPS**2 - GRANTED_RADPS**2)
+    changed = [d for d in found[1:] if d.bias_rad2ps2 > 0.0]
+    assert [d.bias_rad2ps2 for d in changed] == [ANEW_RAD2PS2]
+    assert 11.0 + 1.0 <= changed[0].t <= 11.0 + 2.5
+    rested = [d for d in found if d.rested]
+    assert len(rested) == 1
+    assert TOLD_AFTER_S - 0.5 <= rested[0].t - changed[0].t <= TOLD_AFTER_S + 1.0
+
+
+def test_what_a_rest_has_told_already_is_nothing_new() -> None:
+    found, _ = followed(biased(Moves().rests(3.0).walks(5).rests(5.0).walks(5).gait()).readings())
+    assert not any(d.rested or d.bias_rad2ps2 > 0.0 for d in found)
 
 
 def test_after_the_rest_his_ways_are_straight() -> None:
