@@ -19,6 +19,7 @@ from backend.tracking.aside import (
     relative_from_state,
     relative_of_log,
     smooth_log,
+    smoothed_of,
 )
 from backend.tracking.fold import OtherState
 from backend.tracking.heads import Head
@@ -129,9 +130,10 @@ class Smoothing:
             Unavailable: the process that does it ended.
         """
         key = (head.incident, head.last_seq, head.settings)
-        return await self._tracks.get(
-            key, lambda: self._aside(smooth_log, self._url, head), SMOOTH_WITHIN_S, "Smoothing"
-        )
+        return await self._tracks.get(key, lambda: self._smooth(head), SMOOTH_WITHIN_S, "Smoothing")
+
+    async def _smooth(self, head: Head) -> Smoothed:
+        return smoothed_of(await self._aside(smooth_log, self._url, head))
 
     async def evidence(self, head: Head, node: str, t: float | None) -> Evidence | None:
         """What holds a node's fix at a moment; None where its position is not decided then.

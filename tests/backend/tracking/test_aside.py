@@ -14,7 +14,13 @@ from backend.log.derived import SqlDerivedWriter
 from backend.log.engine import writing
 from backend.log.incidents import IncidentStore
 from backend.log.read import SqlLogReader
-from backend.tracking.aside import advice_of_log, evidence_of_log, relative_from_state
+from backend.tracking.aside import (
+    advice_of_log,
+    evidence_of_log,
+    relative_from_state,
+    smooth_log,
+    smoothed_of,
+)
 from backend.tracking.fold import IncidentFold
 from backend.tracking.heads import Head, head_of
 from backend.tracking.reading import read_block
@@ -62,6 +68,17 @@ def head(store: IncidentStore, write: Write) -> Head:
 
 def fix(t: float) -> Position:
     return Position(t=t, node="ff1", position_m=(0.0, 0.0, 0.0))
+
+
+def test_smoothed_tracks_reach_the_web_process_to_the_last_bit(
+    sqlite_url: str, store: IncidentStore, write: Write
+) -> None:
+    incident, batches = store.create("walk", "recorded"), walk(9)
+    write(incident.id, batches)
+    smoothed = smoothed_of(smooth_log(sqlite_url, head_of(store.get(incident.id))))
+    readings = [reading for batch in batches for reading in batch]
+    assert smoothed == trackers.smoother("kirchhoff", TrackerSettings()).smooth(readings)
+    assert smoothed["ff1"]
 
 
 def test_without_a_moment_the_whole_log_counts(sqlite_url: str, head: Head, asked: Asked) -> None:
