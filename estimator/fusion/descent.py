@@ -7,8 +7,9 @@ from numba import njit
 
 from estimator.fusion.rows import OUTLIERS, SHIFT, SIGMA, SPREAD, WIDTH, columns_of, linearise
 from estimator.graph.dense import Array, Indices
-from estimator.graph.filter_kernels import factorised, forward, scatter, solved
+from estimator.graph.filter_kernels import scatter
 from estimator.graph.robust import mixture_cost, weigh
+from estimator.graph.triangular import factorised, forward_all, solved
 
 BENT = 0.2
 """Curvature left alone: residuals that differ from their linear forecast by less, in standard deviations."""
@@ -113,18 +114,27 @@ def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: i
 @njit(cache=True, error_model="numpy")
 def variances(columns: Indices, jacobian: Array, factor: Array, unscale: Array, predicted: Array) -> None:
     """Variance of each prediction by the state's covariance, H Σ Hᵀ, m, from the factor of L."""
-    n = len(unscale)
-    half = np.empty(n)
-    for r in range(len(jacobian)):
-        half[:] = 0.0
-        first = n
+    m, n = len(jacobian), len(unscale)
+    first = np.full(m, n)
+    for r in range(m):
+        for i in range(WIDTH):
+            if columns[r, i] >= 0 and jacobian[r, i] != 0.0:
+                first[r] = min(first[r], columns[r, i])
+    order = np.argsort(first)
+    halves = np.zeros((n, m))
+    for k in range(m):
+        r = order[k]
         for i in range(WIDTH):
             column = columns[r, i]
             if column >= 0 and jacobian[r, i] != 0.0:
-                half[column] += jacobian[r, i] * unscale[column]
-                first = min(first, column)
-        forward(factor, half, first)
-        predicted[r] = np.dot(half, half)
+                halves[column, k] += jacobian[r, i] * unscale[column]
+    forward_all(factor, halves, first[order])
+    squares = np.zeros(m)
+    for i in range(n):
+        own = halves[i]
+        for k in range(m):
+            squares[k] += own[k] * own[k]
+    predicted[order] = squares
 
 
 @njit(cache=True, error_model="numpy")

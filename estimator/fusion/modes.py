@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from estimator.graph.dense import Array
-from estimator.graph.filter_kernels import factorised, solved
+from estimator.graph.triangular import factorised, solved
 from estimator.measurements.range import range_at
 from estimator.measurements.rssi import rssi_at
 

@@ -1,94 +1,10 @@
-"""Loops of the Kirchhoff state, compiled: they take plain arrays and know nothing of nodes or readings.
-
-The matrices have some tens of rows, where calling LAPACK for each little step costs more than the step. Inner
-loops run over views from 0 on, because only those become vector instructions.
-"""
+"""Loops of the Kirchhoff state, compiled: they take plain arrays and know nothing of nodes or readings."""
 
 import numpy as np
 from numba import njit
 
-from estimator.graph.dense import MAX_JITTER, Array, Indices
-
-BLOCK = 32
-"""Rows that are eliminated one by one before the rest is left to one product of matrices."""
-
-
-@njit(cache=True, error_model="numpy")
-def cholesky(matrix: Array) -> bool:
-    """Put U with A = Uᵀ U in the place of A's upper triangle, n × n; what is below it has no meaning after.
-
-    Returns:
-        False where A is not positive definite.
-    """
-    n = len(matrix)
-    for first in range(0, n, BLOCK):
-        last = min(first + BLOCK, n)
-        for k in range(first, last):
-            pivot = matrix[k, k]
-            if not pivot > 0.0:
-                return False
-            unscale = 1.0 / np.sqrt(pivot)
-            whole = matrix[k, k:]
-            for j in range(len(whole)):
-                whole[j] *= unscale
-            for i in range(k + 1, last):
-                pulled, own, row = matrix[k, i], matrix[i, i:], matrix[k, i:]
-                for j in range(len(own)):
-                    own[j] -= pulled * row[j]
-        if last < n:
-            done = matrix[first:last, last:].copy()
-            matrix[last:, last:] -= np.dot(done.T, done)
-    return True
-
-
-@njit(cache=True, error_model="numpy")
-def factorised(matrix: Array, factor: Array, unscale: Array) -> bool:
-    """`dense.factorise` within a loop: A = D Uᵀ U D after scaling its diagonal to ones.
-
-    Args:
-        matrix: A, n × n.
-        factor: takes U, upper triangle, n × n.
-        unscale: takes the diagonal of D⁻¹, n.
-
-    Returns:
-        False where A is not finite, or far from positive definite.
-    """
-    n = len(matrix)
-    for i in range(n):
-        unscale[i] = 1.0 / np.sqrt(matrix[i, i]) if matrix[i, i] > 0.0 else np.nan
-    jitter = 0.0
-    while jitter <= MAX_JITTER:
-        for i in range(n):
-            own, scaled = matrix[i], factor[i]
-            for j in range(n):
-                scaled[j] = own[j] * unscale[i] * unscale[j]
-            scaled[i] += jitter
-        if cholesky(factor):
-            return True
-        jitter = 1e-13 if jitter == 0.0 else jitter * 10.0
-    return False
-
-
-@njit(cache=True, error_model="numpy")
-def forward(factor: Array, right: Array, first: int) -> None:
-    """Put U⁻ᵀ r in the place of r, n, whose numbers before `first` are nil."""
-    n = len(right)
-    for i in range(first, n):
-        right[i] /= factor[i, i]
-        known, rest, row = right[i], right[i + 1 :], factor[i, i + 1 :]
-        for j in range(len(rest)):
-            rest[j] -= row[j] * known
-
-
-@njit(cache=True, error_model="numpy")
-def solved(factor: Array, unscale: Array, right: Array) -> Array:
-    """A⁻¹ r, n, of a matrix that has been `factorised`."""
-    answer = right * unscale
-    forward(factor, answer, 0)
-    n = len(answer)
-    for i in range(n - 1, -1, -1):
-        answer[i] = (answer[i] - np.dot(factor[i, i + 1 :], answer[i + 1 :])) / factor[i, i]
-    return answer * unscale
+from estimator.graph.dense import Array, Indices
+from estimator.graph.triangular import STRIP, factorised, take_rows
 
 
 @njit(cache=True, error_model="numpy")
@@ -149,25 +65,28 @@ def carry(matrix: Array, vector: Array, n: int, rows: Indices, transition: Array
     g, d = rows.shape
     flat = rows.ravel()
     turned, pulls = np.zeros((g * d, n)), np.zeros(g * d)
-    back = np.empty((g, d, d))
+    back, before = np.empty((g, d, d)), np.empty(d)
     for i in range(g):
         back[i] = np.linalg.inv(transition[i])
         for a in range(d):
+            own = turned[i * d + a]
             for b in range(d):
-                by = back[i, b, a]
+                by, row = back[i, b, a], matrix[rows[i, b]]
                 if by == 0.0:
                     continue
                 pulls[i * d + a] += by * vector[rows[i, b]]
                 for j in range(n):
-                    turned[i * d + a, j] += by * matrix[rows[i, b], j]
+                    own[j] += by * row[j]
     for r in range(g * d):
+        own = turned[r]
         for i in range(g):
-            before = turned[r, :][rows[i]]
+            for b in range(d):
+                before[b] = own[rows[i, b]]
             for a in range(d):
                 total = 0.0
                 for b in range(d):
                     total += before[b] * back[i, b, a]
-                turned[r, rows[i, a]] = total
+                own[rows[i, a]] = total
     kernel = np.empty((g * d, g * d))
     for r in range(g * d):
         for s in range(r + 1):
@@ -179,8 +98,11 @@ def carry(matrix: Array, vector: Array, n: int, rows: Indices, transition: Array
         kernel[i * d : (i + 1) * d, i * d : (i + 1) * d] += np.linalg.inv(noise[i])
     for r in range(g * d):
         vector[flat[r]] = pulls[r]
+        row, own = matrix[flat[r]], turned[r]
         for j in range(n):
-            matrix[flat[r], j] = matrix[j, flat[r]] = turned[r, j]
+            row[j] = own[j]
+        for j in range(n):
+            matrix[j, flat[r]] = own[j]
     return kernel
 
 
@@ -204,23 +126,25 @@ def loosen(matrix: Array, vector: Array, n: int, flat: Indices, kernel: Array) -
         return False
     edges, pulls = np.empty((k, n)), np.empty(k)
     for r in range(k):
+        row, own = matrix[flat[r]], edges[r]
+        for j in range(n):
+            own[j] = row[j] * unscale[r]
+        take_rows(own, factor[:r, r], edges, 0, 0)
         pulls[r] = vector[flat[r]] * unscale[r]
+        for i in range(r):
+            pulls[r] -= factor[i, r] * pulls[i]
+        last = 1.0 / factor[r, r]
+        pulls[r] *= last
         for j in range(n):
-            edges[r, j] = matrix[flat[r], j] * unscale[r]
-    for i in range(k):
-        own = 1.0 / factor[i, i]
-        pulls[i] *= own
-        for j in range(n):
-            edges[i, j] *= own
-        for r in range(i + 1, k):
-            by = factor[i, r]
-            pulls[r] -= by * pulls[i]
-            for j in range(n):
-                edges[r, j] -= by * edges[i, j]
-    taken = np.dot(edges.T, edges)
-    for i in range(n):
-        for j in range(i + 1):
-            matrix[i, j] -= taken[i, j]
-            matrix[j, i] = matrix[i, j]
+            own[j] *= last
+    for start in range(0, n, STRIP):
+        end = min(start + STRIP, n)
+        taken = np.dot(edges[:, start:end].copy().T, edges[:, :end].copy())
+        for i in range(start, end):
+            own, less = matrix[i], taken[i - start]
+            for j in range(i + 1):
+                own[j] -= less[j]
+            for j in range(i):
+                matrix[j, i] = own[j]
     vector[:n] -= np.dot(edges.T, pulls)
     return True

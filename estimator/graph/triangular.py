@@ -1,0 +1,153 @@
+"""Triangular factors of matrices of some tens or hundreds of rows, and what is solved with them, compiled.
+
+Calling LAPACK for each little step costs more than the step. Inner loops run over views from 0 on, because
+only those become vector instructions.
+"""
+
+import numpy as np
+from numba import njit
+
+from estimator.graph.dense import MAX_JITTER, Array, Indices
+
+BLOCK = 32
+"""Rows that are eliminated one by one before the rest is left to products of matrices."""
+STRIP = 64
+"""Rows of such a product: only what lies above the diagonal is needed, and one product would make all."""
+
+
+@njit(cache=True, error_model="numpy")
+def cholesky(matrix: Array) -> bool:
+    """Put U with A = Uᵀ U in the place of A's upper triangle, n × n; what is below it has no meaning after.
+
+    Returns:
+        False where A is not positive definite.
+    """
+    n = len(matrix)
+    for first in range(0, n, BLOCK):
+        last = min(first + BLOCK, n)
+        for i in range(first, last):
+            own = matrix[i, i:]
+            take_rows(own, matrix[first:i, i], matrix, first, i)
+            if not own[0] > 0.0:
+                return False
+            unscale = 1.0 / np.sqrt(own[0])
+            for j in range(len(own)):
+                own[j] *= unscale
+        for start in range(last, n, STRIP):
+            end = min(start + STRIP, n)
+            taken = np.dot(matrix[first:last, start:end].copy().T, matrix[first:last, start:].copy())
+            for i in range(end - start):
+                own, less = matrix[start + i, start + i :], taken[i, i:]
+                for j in range(len(own)):
+                    own[j] -= less[j]
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def take_rows(own: Array, shares: Array, matrix: Array, top: int, left: int) -> None:
+    """Take shares of a matrix's rows off another row, one after the other.
+
+    Four at a time, so that it is read and written less often.
+
+    Args:
+        own: n, changed.
+        shares: of each row, k.
+        matrix: its k rows from `top` on, and their n numbers from `left` on.
+        top: the first row.
+        left: the first column.
+    """
+    n, k = len(own), len(shares)
+    at = 0
+    while at + 4 <= k:
+        one, two, three, four = shares[at], shares[at + 1], shares[at + 2], shares[at + 3]
+        row = top + at
+        first, second = matrix[row, left:], matrix[row + 1, left:]
+        third, fourth = matrix[row + 2, left:], matrix[row + 3, left:]
+        for j in range(n):
+            own[j] = own[j] - one * first[j] - two * second[j] - three * third[j] - four * fourth[j]
+        at += 4
+    while at < k:
+        one, first = shares[at], matrix[top + at, left:]
+        for j in range(n):
+            own[j] -= one * first[j]
+        at += 1
+
+
+@njit(cache=True, error_model="numpy")
+def factorised(matrix: Array, factor: Array, unscale: Array) -> bool:
+    """`dense.factorise` within a loop: A = D Uᵀ U D after scaling its diagonal to ones.
+
+    Args:
+        matrix: A, n × n.
+        factor: takes U, upper triangle, n × n.
+        unscale: takes the diagonal of D⁻¹, n.
+
+    Returns:
+        False where A is not finite, or far from positive definite.
+    """
+    n = len(matrix)
+    for i in range(n):
+        unscale[i] = 1.0 / np.sqrt(matrix[i, i]) if matrix[i, i] > 0.0 else np.nan
+    jitter = 0.0
+    while jitter <= MAX_JITTER:
+        for i in range(n):
+            own, scaled, others = matrix[i, i:], factor[i, i:], unscale[i:]
+            for j in range(n - i):
+                scaled[j] = own[j] * unscale[i] * others[j]
+            scaled[0] += jitter
+        if cholesky(factor):
+            return True
+        jitter = 1e-13 if jitter == 0.0 else jitter * 10.0
+    return False
+
+
+@njit(cache=True, error_model="numpy")
+def forward(factor: Array, right: Array, first: int) -> None:
+    """Put U⁻ᵀ r in the place of r, n, whose numbers before `first` are nil."""
+    n = len(right)
+    for i in range(first, n):
+        right[i] /= factor[i, i]
+        known, rest, row = right[i], right[i + 1 :], factor[i, i + 1 :]
+        for j in range(len(rest)):
+            rest[j] -= row[j] * known
+
+
+@njit(cache=True, error_model="numpy")
+def forward_all(factor: Array, rights: Array, first: Indices) -> None:
+    """`forward` of many: put U⁻ᵀ r in the place of each column r of `rights`, n × m.
+
+    Args:
+        factor: U, upper triangle, n × n.
+        rights: n × m, changed.
+        first: before it the numbers of each are nil, m, ascending.
+    """
+    n, m = rights.shape
+    for start in range(0, n, BLOCK):
+        end, begun = min(start + BLOCK, n), 0
+        while begun < m and first[begun] < end:
+            begun += 1
+        if begun == 0:
+            continue
+        for i in range(start, end):
+            own = rights[i, :begun]
+            take_rows(own, factor[start:i, i], rights, start, 0)
+            last = factor[i, i]
+            for j in range(begun):
+                own[j] /= last
+        if end < n:
+            taken = np.dot(factor[start:end, end:].copy().T, rights[start:end, :begun].copy())
+            for i in range(end, n):
+                own, less = rights[i, :begun], taken[i - end]
+                for j in range(begun):
+                    own[j] -= less[j]
+
+
+@njit(cache=True, error_model="numpy")
+def solved(factor: Array, unscale: Array, right: Array) -> Array:
+    """A⁻¹ r, n, of a matrix that has been `factorised`."""
+    answer = right * unscale
+    forward(factor, answer, 0)
+    n = len(answer)
+    for i in range(n - 1, -1, -1):
+        answer[i] = (answer[i] - np.dot(factor[i, i + 1 :], answer[i + 1 :])) / factor[i, i]
+    return answer * unscale

@@ -1,0 +1,64 @@
+"""Triangular factors against numpy's own."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from estimator.graph.dense import Array
+from estimator.graph.triangular import BLOCK, STRIP, factorised, forward, forward_all, solved
+
+
+def positive(chance: np.random.Generator, n: int) -> Array:
+    """A positive definite matrix whose rows differ in size as metres and rad/s do."""
+    half, scale = chance.normal(0.0, 1.0, (n, 2 * n)), 10.0 ** chance.uniform(-3.0, 3.0, n)
+    matrix: Array = half @ half.T * scale[:, None] * scale
+    return matrix
+
+
+@given(st.integers(0, 10_000), st.integers(1, BLOCK + 2 * STRIP))
+def test_factor_and_solution_are_those_of_numpy(seed: int, n: int) -> None:
+    chance = np.random.default_rng(seed)
+    matrix, right = positive(chance, n), chance.normal(0.0, 1.0, n)
+    factor, unscale = np.zeros((n, n)), np.empty(n)
+    assert factorised(matrix, factor, unscale)
+    upper = np.triu(factor) / unscale
+    scale = np.sqrt(np.diagonal(matrix))
+    assert upper.T @ upper / scale / scale[:, None] == pytest.approx(
+        matrix / scale / scale[:, None], abs=1e-12
+    )
+    answer = solved(factor, unscale, right)
+    assert answer * scale == pytest.approx(np.linalg.solve(matrix / scale / scale[:, None], right / scale))
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -1.0, 0.0])
+def test_what_is_not_finite_or_not_positive_definite_is_refused(bad: float) -> None:
+    for place in (0, BLOCK + 3):
+        matrix = np.eye(BLOCK + 4)
+        matrix[place, place] = bad
+        assert not factorised(matrix, np.zeros(matrix.shape), np.empty(len(matrix)))
+    matrix = np.ones((3, 3))
+    matrix[0, 2] = matrix[2, 0] = bad or 2.0
+    assert not factorised(matrix, np.zeros((3, 3)), np.empty(3))
+
+
+def test_what_only_rounding_has_made_indefinite_is_raised_by_as_little_as_lets_it_pass() -> None:
+    matrix = np.ones((4, 4)) - 1e-12 * np.eye(4)
+    factor, unscale = np.zeros((4, 4)), np.empty(4)
+    assert factorised(matrix, factor, unscale)
+    upper = np.triu(factor)
+    assert np.abs(upper.T @ upper - matrix).max() < 1e-10
+
+
+@given(st.integers(0, 10_000), st.integers(1, 3 * BLOCK), st.integers(0, 9))
+def test_many_right_sides_at_once_are_each_of_them(seed: int, n: int, m: int) -> None:
+    chance = np.random.default_rng(seed)
+    factor, unscale = np.zeros((n, n)), np.empty(n)
+    assert factorised(positive(chance, n), factor, unscale)
+    first = np.sort(chance.integers(0, n + 1, m))
+    rights = np.where(np.arange(n)[:, None] < first, 0.0, chance.normal(0.0, 1.0, (n, m)))
+    each = rights.T.copy()
+    for right, begins in zip(each, first.tolist(), strict=True):
+        forward(factor, right, begins)
+    forward_all(factor, rights, first)
+    assert rights.transpose() == pytest.approx(each, rel=1e-9, abs=1e-9 * np.abs(each).max(initial=1.0))
