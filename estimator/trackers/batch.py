@@ -5,7 +5,9 @@ keyframes are solved together (`estimator.smoothing`).
 """
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
+from operator import attrgetter
 
 import numpy as np
 
@@ -54,6 +56,7 @@ RARER = 48.0
 """The first pass only finds where to start: its window is solved this many times more rarely."""
 MOVES = 20
 """So many nodes at most are found elsewhere at a time: each asks for another solution."""
+UNTIL_T = attrgetter("until_t")
 LARGEST = 60_000_000
 """Numbers that the chain may hold: beyond it keyframes are set farther apart."""
 
@@ -107,7 +110,8 @@ def in_order(readings: Sequence[AnyReading]) -> list[AnyFolded]:
     """The readings in canonical order, without those whose epoch must be wrong."""
     ordered = sorted(in_pieces(readings), key=place_of)
     middle = ordered[len(ordered) // 2].until_t if ordered else 0.0
-    return [r for r in ordered if abs(r.until_t - middle) < LONGEST_S]
+    first = bisect_right(ordered, middle - LONGEST_S, key=UNTIL_T)
+    return ordered[first : bisect_left(ordered, middle + LONGEST_S, key=UNTIL_T)]
 
 
 def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
@@ -223,9 +227,7 @@ def online_pass(readings: Sequence[AnyFolded], settings: TrackerSettings) -> Fus
     start = 0
     while start < len(readings):
         until_t = (math.floor(readings[start].until_t / TICK_S) + 1) * TICK_S
-        end = start
-        while end < len(readings) and readings[end].until_t < until_t:
-            end += 1
+        end = bisect_left(readings, until_t, start, key=UNTIL_T)
         fold_tick(state, until_t, readings[start:end])
         keep_up(state, until_t, RARER)
         start = end
@@ -239,7 +241,9 @@ def lifetimes(readings: Sequence[AnyFolded]) -> dict[str, tuple[float, float]]:
     first: dict[str, float] = {}
     last: dict[str, float] = {}
     for reading in readings:
+        since_t, until_t = reading.t, reading.until_t
         for name in names_of(reading):
-            last[name] = reading.until_t
-            first[name] = min(first.get(name, reading.t), reading.t)
+            last[name] = until_t
+            if name not in first or since_t < first[name]:
+                first[name] = since_t
     return {name: (t, last[name]) for name, t in first.items()}
