@@ -60,12 +60,15 @@ def weigh(
     """
     m = len(residual)
     information, pulled, good = np.empty(m), np.empty(m), np.empty(m)
+    known, usual, rare = np.nan, 0.0, 0.0
     for i in range(m):
+        if outliers[i] != known:  # those of one technology follow each other
+            known, usual, rare = outliers[i], np.log1p(-outliers[i]), np.log(outliers[i])
         good_variance = sigma[i] ** 2
         bad_variance = good_variance + spread[i] ** 2
         good_total, bad_total = good_variance + predicted[i], bad_variance + predicted[i]
-        log_good = np.log1p(-outliers[i]) - 0.5 * (np.log(good_total) + residual[i] ** 2 / good_total)
-        log_bad = np.log(outliers[i]) - 0.5 * (np.log(bad_total) + (residual[i] - shift[i]) ** 2 / bad_total)
+        log_good = usual - 0.5 * (np.log(good_total) + residual[i] ** 2 / good_total)
+        log_bad = rare - 0.5 * (np.log(bad_total) + (residual[i] - shift[i]) ** 2 / bad_total)
         good[i] = 1.0 / (1.0 + np.exp(min(max(log_bad - log_good, -700.0), 700.0)))
         from_good, from_bad = good[i] / good_variance, (1.0 - good[i]) / bad_variance
         information[i] = from_good + from_bad
@@ -85,11 +88,14 @@ def mixture_cost(residual: Array, sigma: Array, outliers: Array, shift: Array, s
         spread: see `Mixture`, m.
     """
     cost = np.empty(len(residual))
+    known, usual, rare = np.nan, 0.0, 0.0
     for i in range(len(residual)):
+        if outliers[i] != known:
+            known, usual, rare = outliers[i], np.log1p(-outliers[i]), np.log(outliers[i])
         good = sigma[i] ** 2
         bad = good + spread[i] ** 2
-        from_good = np.log1p(-outliers[i]) - 0.5 * (np.log(good) + residual[i] ** 2 / good)
-        from_bad = np.log(outliers[i]) - 0.5 * (np.log(bad) + (residual[i] - shift[i]) ** 2 / bad)
+        from_good = usual - 0.5 * (np.log(good) + residual[i] ** 2 / good)
+        from_bad = rare - 0.5 * (np.log(bad) + (residual[i] - shift[i]) ** 2 / bad)
         cost[i] = -np.logaddexp(from_good, from_bad)
     return cost
 
