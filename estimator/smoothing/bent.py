@@ -2,7 +2,6 @@
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from estimator.fusion.ledger import RANGE, RSSI
 from estimator.graph.dense import Array
@@ -11,7 +10,7 @@ from estimator.measurements.range import range_slope
 from estimator.measurements.rssi import ANTENNA_M, rssi_slope
 from estimator.smoothing.ends import place_end
 from estimator.smoothing.linear import Readings
-from estimator.smoothing.walks import STATES
+from estimator.smoothing.walks import PLACES, STATES
 
 NOWHERE_M2 = 1e-6
 
@@ -52,8 +51,8 @@ def add_bends(
         corner: s × s, changed.
     """
     a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
-    bend, pulled_a, pulled_b = np.empty((3, 3)), np.empty((3, STATES)), np.empty((3, STATES))
-    at_a, at_b = np.empty(STATES, dtype=np.uint64), np.empty(STATES, dtype=np.uint64)
+    bend, both = np.empty((3, 3)), np.empty((3, 3))
+    pulled_a, pulled_b = np.empty((3, 3)), np.empty((3, 3))
     width = diagonal.shape[1]
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
@@ -82,28 +81,40 @@ def add_bends(
         bend_at(e, n, u, across, upwards, along, bend)
         first, second = columns[i, 0], columns[i, STATES]
         square, beside = diagonal[slab[i]], wide[slab[i]]
-        for c in range(STATES):
-            at_a[c], at_b[c] = columns[i, c], columns[i, STATES + c]
-        if 0 <= first < width:
-            pull(bend, by_a, pulled_a)
-            add_between(square, at_a, at_a, by_a, pulled_a, 1.0)
-        if 0 <= second < width:
-            pull(bend, by_b, pulled_b)
-            add_between(square, at_b, at_b, by_b, pulled_b, 1.0)
-            if 0 <= first < width:
-                add_between(square, at_a, at_b, by_a, pulled_b, -1.0)
-                add_between(square, at_b, at_a, by_b, pulled_a, -1.0)
+        a_moves, b_moves = 0 <= first < width, 0 <= second < width
+        # Many readings are made at their keyframes: from there nothing has been turned.
+        a_turns, b_turns = a_moves and by_a.any(), b_moves and by_b.any()
+        if a_moves:
+            add_block(square, first, first, bend, 1.0)
+            if a_turns:
+                add_turned(square, first, bend, by_a, pulled_a, both)
+        if b_moves:
+            add_block(square, second, second, bend, 1.0)
+            if b_turns:
+                add_turned(square, second, bend, by_b, pulled_b, both)
+        if a_moves and b_moves:
+            add_both(square, first, second, bend, -1.0)
+            if a_turns:
+                add_both(square, second, first + PLACES, pulled_a, -1.0)
+            if b_turns:
+                add_both(square, first, second + PLACES, pulled_b, -1.0)
+            if a_turns and b_turns:
+                multiply(by_a.T, pulled_b, both)
+                add_both(square, first + PLACES, second + PLACES, both, -1.0)
         if first >= width:
-            add_lasting(corner, first - width, first - width, bend, 1.0)
-            if 0 <= second < width:
-                add_beside(beside, at_b, first - width, pulled_b)
+            add_block(corner, first - width, first - width, bend, 1.0)
+            if b_moves:
+                add_block(beside, second, first - width, bend, -1.0)
+                if b_turns:
+                    add_block(beside, second + PLACES, first - width, pulled_b.T, -1.0)
         if second >= width:
-            add_lasting(corner, second - width, second - width, bend, 1.0)
-            if 0 <= first < width:
-                add_beside(beside, at_a, second - width, pulled_a)
+            add_block(corner, second - width, second - width, bend, 1.0)
+            if a_moves:
+                add_block(beside, first, second - width, bend, -1.0)
+                if a_turns:
+                    add_block(beside, first + PLACES, second - width, pulled_a.T, -1.0)
             elif first >= width:
-                add_lasting(corner, first - width, second - width, bend, -1.0)
-                add_lasting(corner, second - width, first - width, bend, -1.0)
+                add_both(corner, first - width, second - width, bend, -1.0)
 
 
 @njit(cache=True)
@@ -135,62 +146,41 @@ def bend_at(e: float, n: float, u: float, across: float, upwards: float, along: 
 
 
 @njit(cache=True)
-def pull(bend: Array, turned: Array, pulled: Array) -> None:
-    """`pulled`, B [1 T], 3 × 6, of a curvature B (3 × 3) and the derivatives T (3 × 3) of an end's place."""
-    for r in range(3):
-        for c in range(3):
-            pulled[r, c] = bend[r, c]
-            pulled[r, 3 + c] = (
-                bend[r, 0] * turned[0, c] + bend[r, 1] * turned[1, c] + bend[r, 2] * turned[2, c]
-            )
+def add_block(target: Array, row: int, column: int, block: Array, sign: float) -> None:
+    """Add ±`block`, 3 × 3, to a matrix, from a row and a column on."""
+    for r in range(PLACES):
+        for c in range(PLACES):
+            target[row + r, column + c] += sign * block[r, c]
 
 
 @njit(cache=True)
-def add_between(
-    square: Array,
-    rows: NDArray[np.uint64],
-    columns: NDArray[np.uint64],
-    turned: Array,
-    pulled: Array,
-    sign: float,
-) -> None:
-    """Add ±[1 T]ᵀ `pulled` to the block of two moving ends.
+def add_both(target: Array, row: int, column: int, block: Array, sign: float) -> None:
+    """Add ±`block`, 3 × 3, to a symmetric matrix, from a row and a column on, and across its diagonal."""
+    add_block(target, row, column, block, sign)
+    add_block(target, column, row, block.T, sign)
+
+
+@njit(cache=True)
+def multiply(one: Array, other: Array, product: Array) -> None:
+    """Put A B in the place of `product`, 3 × 3 each."""
+    for r in range(PLACES):
+        for c in range(PLACES):
+            product[r, c] = one[r, 0] * other[0, c] + one[r, 1] * other[1, c] + one[r, 2] * other[2, c]
+
+
+@njit(cache=True)
+def add_turned(square: Array, first: int, bend: Array, turned: Array, pulled: Array, both: Array) -> None:
+    """Add what the block of a moving end has besides its place: B T, its transpose, and Tᵀ B T.
 
     Args:
-        square: of their keyframe, n × n, changed.
-        rows: the numbers of one end, 6.
-        columns: those of the other, 6.
-        turned: T of the one.
-        pulled: see `pull`, of the other.
-        sign: 1 or −1.
+        square: of its keyframe, n × n, changed.
+        first: the first of its numbers.
+        bend: B, curvature by its place, 3 × 3.
+        turned: T, derivatives of its place by its last three numbers, 3 × 3.
+        pulled: takes B T, 3 × 3.
+        both: is used, 3 × 3.
     """
-    for r in range(3):
-        own, turns = rows[r], rows[3 + r]
-        for c in range(STATES):
-            square[own, columns[c]] += sign * pulled[r, c]
-            square[turns, columns[c]] += sign * (
-                turned[0, r] * pulled[0, c] + turned[1, r] * pulled[1, c] + turned[2, r] * pulled[2, c]
-            )
-
-
-@njit(cache=True)
-def add_beside(beside: Array, rows: NDArray[np.uint64], start: int, pulled: Array) -> None:
-    """Add −`pulled`ᵀ to a keyframe's border: between a moving end and one that stands.
-
-    Args:
-        beside: n × (s + 1), changed.
-        rows: the numbers of the moving end, 6.
-        start: first column of the one that stands.
-        pulled: see `pull`, of the moving end.
-    """
-    for c in range(STATES):
-        for r in range(3):
-            beside[rows[c], start + r] -= pulled[r, c]
-
-
-@njit(cache=True)
-def add_lasting(corner: Array, row: int, column: int, bend: Array, sign: float) -> None:
-    """Add ±B to the corner, at the first row and column of two ends that stand."""
-    for r in range(3):
-        for c in range(3):
-            corner[row + r, column + c] += sign * bend[r, c]
+    multiply(bend, turned, pulled)
+    add_both(square, first, first + PLACES, pulled, 1.0)
+    multiply(turned.T, pulled, both)
+    add_block(square, first + PLACES, first + PLACES, both, 1.0)
