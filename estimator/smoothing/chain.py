@@ -58,17 +58,24 @@ class Chain:
         keyframes = np.zeros((self._length, self.width))
         for strand in self.strands:
             keyframes[:, strand.group.columns] = strand.gradient
-        return np.concatenate([keyframes.ravel(), self._corner()[1]])
+        return np.concatenate([keyframes.ravel(), self._corner_gradient()])
 
-    def _corner(self) -> tuple[Array, Array]:
-        """C, s × s, and the border's gradient, s."""
+    def _corner(self) -> Array:
+        """C, s × s."""
         *moving, rest = self.strands  # the last one has all of the border
-        corner, gradient = rest.corner.copy(), rest.corner_gradient.copy()
+        corner = rest.corner.copy()
         for strand in moving:
             lasting = strand.group.lasting
             corner[lasting[:, None], lasting] += strand.corner
-            gradient[lasting] += strand.corner_gradient
-        return corner, gradient
+        return corner
+
+    def _corner_gradient(self) -> Array:
+        """The border's gradient, s."""
+        *moving, rest = self.strands
+        gradient = rest.corner_gradient.copy()
+        for strand in moving:
+            gradient[strand.group.lasting] += strand.corner_gradient
+        return gradient
 
     def remainder(self, keyframe: int) -> Remainder:
         """Eliminate what lies before a keyframe: what is left of it on that keyframe and the border.
@@ -88,7 +95,7 @@ class Chain:
             matrix[own[:, None], rest] = strand.border[keyframe]
             matrix[rest[:, None], own] = strand.border[keyframe].T
             vector[own] = strand.gradient[keyframe]
-        matrix[self.width :, self.width :], vector[self.width :] = self._corner()
+        matrix[self.width :, self.width :], vector[self.width :] = self._corner(), self._corner_gradient()
         return Remainder(0.5 * (matrix + matrix.T), vector)
 
     def reduce(self, mend: bool = True) -> Array:
@@ -105,7 +112,7 @@ class Chain:
         """
         for strand in self.strands:
             strand.eliminate(self._length, mend)
-        corner, gradient = self._corner()
+        corner, gradient = self._corner(), self._corner_gradient()
         try:
             self._cholesky = factorise(corner)
         except ValueError:
