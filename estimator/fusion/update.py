@@ -36,8 +36,10 @@ def update(state: FusionState, table: Array) -> None:
         return
     state.bent_m += bend_m(graph, found.x - graph.reference)
     graph.settle(found.matrix, found.x)
-    # Who passes a kicked breadcrumb is held back by it: its window is not to wait.
-    if found.doubted and ((found.good < SAME_PLACE) & (table[:, KIND] == RANGE)).any():
+    # Who passes a kicked breadcrumb is held back by it, or hears it too far off again and again: its window
+    # is not to wait.
+    odd = (found.good < SAME_PLACE) & (table[:, KIND] == RANGE)
+    if (found.doubted and odd.any()) or odd_again(table[odd], state.links.table):
         state.suspected = True
     _learn(state, table, found)
 
@@ -64,6 +66,21 @@ def _learn(state: FusionState, table: Array, found: Found) -> None:
     for source, told in zip(state.sources, sums.tolist(), strict=True):
         if told[4] > 0.0:
             state.noise[source] = state.learned(source).with_errors(*told)
+
+
+@njit(cache=True, error_model="numpy")
+def odd_again(table: Array, links: Array) -> bool:
+    """Whether the reading before one of some outliers, on the same link, was an outlier as well.
+
+    Args:
+        table: of the outliers, see `rows.Row`.
+        links: the newest reading on each link, see `links`; its error is that of the one before.
+    """
+    for r in range(len(table)):
+        link = int(table[r, LINK])
+        if link >= 0 and links[link, KEPT] > 0.0 and np.isnan(links[link, ERROR]):
+            return True
+    return False
 
 
 @njit(cache=True, error_model="numpy")

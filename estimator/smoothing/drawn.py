@@ -11,12 +11,14 @@ import numpy as np
 from estimator.fusion.modes import find_modes
 from estimator.fusion.nodes import NodeState
 from estimator.graph.kernels import Integers
-from estimator.smoothing.elsewhere import FAR_M, GAIN, Place, Seen, clear_place, seen_of
+from estimator.smoothing.elsewhere import FAR_M, Place, Seen, clear_place, seen_of
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
 
 DISAGREEING = 5.0
 """Readings that do not cost more themselves, in log likelihood, are not suspected of costing others."""
+RELIEF = 2.0
+"""Where all others gain no more without them, in log likelihood, they have drawn nobody."""
 ITERATIONS = 6
 
 
@@ -33,7 +35,7 @@ class Drawn(NamedTuple):
 
 
 def drawn_place(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> Drawn | None:
-    """The place that readings have for a node, where all others fit clearly better without them.
+    """The place that readings have for a node, where all readings together fit clearly better with it there.
 
     Only of readings by who has a PDR unit, or stands: who has none goes where his ranges take him.
 
@@ -55,7 +57,7 @@ def drawn_place(problem: Problem, solved: Solved, node: NodeState, mine: Integer
 
 
 def _without(problem: Problem, solved: Solved, node: NodeState, mine: Integers) -> Drawn | None:
-    """The place that readings `mine` have for a node, if the others gain clearly without them."""
+    """The place that readings `mine` have for a node, if they and all others fit clearly better with it."""
     # What the last steps have left is nobody's fault.
     solved = problem.solve(solved.x, iterations=ITERATIONS)
     others = problem.without(mine)
@@ -66,7 +68,7 @@ def _without(problem: Problem, solved: Solved, node: NodeState, mine: Integers) 
         return None
     relief = others.cost(solved.x, solved.linear.residual, solved.motions) - alone.cost
     here, there = (seen_of(problem, one, node, mine) for one in (solved, alone))
-    if here is None or there is None or relief <= GAIN:
+    if here is None or there is None or relief <= RELIEF:
         return None
     modes = find_modes(there.sought)
     if not modes:

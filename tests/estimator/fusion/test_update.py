@@ -5,7 +5,7 @@ import pytest
 
 from estimator.fusion.links import ERROR, KEPT
 from estimator.fusion.rows import FIELDS, LINK, NOMINAL, SIGMA, SOURCE
-from estimator.fusion.update import tally
+from estimator.fusion.update import odd_again, tally
 
 
 def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_link() -> None:
@@ -30,3 +30,20 @@ def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_
     assert (sums[2] == 0.0).all()
     assert links[0, ERROR] == pytest.approx(second)
     assert np.isnan(links[1, ERROR])
+
+
+@pytest.mark.parametrize(
+    ("kept", "error", "again"),
+    [
+        pytest.param(0.6, np.nan, True, id="the one before was one as well"),
+        pytest.param(0.6, 0.5, False, id="the one before was good"),
+        pytest.param(0.0, np.nan, False, id="there was none before"),
+    ],
+)
+def test_an_outlier_is_told_from_two_in_a_row_on_one_link(kept: float, error: float, again: bool) -> None:
+    """The first may be chance; the second may be a breadcrumb that was kicked."""
+    table, links = np.zeros((2, FIELDS)), np.zeros((1, 5))
+    table[:, LINK] = -1, 0
+    links[0, KEPT], links[0, ERROR] = kept, error
+    assert odd_again(table, links) == again
+    assert not odd_again(table[:0], links)

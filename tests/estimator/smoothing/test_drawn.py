@@ -23,7 +23,7 @@ LAY_M, LIES_M = (4.0, 10.0), (9.0, 13.0)
 PASSED_S = 14
 """When the walker has come to the end of his way, and turns; while he was there the breadcrumb was kicked."""
 CRUMBS = {"b1": LAY_M, "b2": (-4.0, 3.0)}
-SEED, NEAR_S, FOLDED_S, UNTIL_S = 5, 235.0, 244.0, 245.0
+SEED, NEAR_S, FOLDED_S, UNTIL_S = 16, 233.0, 242.0, 243.0
 """A kick in whose scenario who passes is near again at last, and bent by the breadcrumb, for so long."""
 
 
