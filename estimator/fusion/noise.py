@@ -35,7 +35,10 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
 
     @property
     def factor(self) -> float:
-        """Learned standard deviation over the claimed or assumed one."""
+        """Learned standard deviation over the claimed or assumed one.
+
+        A scatter below a third tells nothing of what is alike in many readings: antennas, multipath.
+        """
         return min(max(math.sqrt(max(self.squares, 0.0) / self.count), 0.3), 2.0)
 
     @property
