@@ -13,7 +13,6 @@ from estimator.fusion.silence import LONGEST_S
 from estimator.fusion.standing import stand_on
 from estimator.fusion.way import Mark
 from estimator.inertial.navigation import Led
-from estimator.inertial.resting import GRANTED_RADPS
 from estimator.measurements.displacement import Displacement
 
 TRAIL_S = 4.0
@@ -94,8 +93,8 @@ class Step:
         up += (physics.SCALE_SIGMA * u) ** 2
         if isinstance(reading, Led):
             up += reading.up_m2
-            if reading.rested:
-                turn = Single(self.node.unit, 1, 0.0, GRANTED_RADPS, physics.TURN_NOISE)
+            if reading.rested_radps > 0.0:
+                turn = Single(self.node.unit, 1, 0.0, reading.rested_radps, physics.TURN_NOISE)
         noise = walk_noise((across, across, up), reading.sigma_m, length, duration)
         if isinstance(reading, Led):
             noise = sum_of(noise, (0.0, 0.0, 0.0, 0.0, reading.bias_rad2ps2, 0.0))

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from estimator.graph.dense import Array
-from estimator.inertial.boot import ERRORS, FORCE, GRAVITY, GRAVITY_MPS2, SINCE_S, Boot
+from estimator.inertial.boot import BLOWN_M2PS4, ERRORS, FORCE, GRAVITY, GRAVITY_MPS2, SINCE_S, Boot
 from estimator.inertial.holding import hold
 from estimator.inertial.levelling import gather
 from estimator.inertial.loose import branch, loosen
@@ -42,12 +42,13 @@ def advance(boot: Boot, force: Array, rate: Array, step_s: float) -> int:
                 return i + 1
             continue
         freed(boot.free, force[i], rate[i], other)
-        carry(boot.held, sample, boot.known[GRAVITY], FORCE, step_s)
+        ahead = carry(boot.held, sample, boot.known[GRAVITY], FORCE, step_s)
         carry(boot.free, other, GRAVITY_MPS2, ERRORS, step_s)
         blow(boot.free, boot.felt[JERKED], step_s)
         rest(boot, rate[i], step_s)
         boot.loose[SINCE_S] += step_s
-        sigma_mps = hold(boot, step_s)
+        boot.loose[BLOWN_M2PS4] = max(boot.loose[BLOWN_M2PS4], boot.felt[JERKED])
+        sigma_mps = hold(boot, ahead, step_s)
         if not np.isinf(sigma_mps):
             loosen(boot, sigma_mps)
     return len(force)

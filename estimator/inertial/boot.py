@@ -18,7 +18,8 @@ GRAVITY, HEADING, AXIS, AZIMUTH = range(4)
 """What `known` holds."""
 HELD_S, STOOD, FOOTHOLD_M, FLAT_M, FLAT_M2 = range(5)
 """What `footing` holds."""
-BRANCHED_M, APART_M, GLIDES_MPS, GLID_M, MOVED_M2, SINCE_S, RESTLESS_S = 0, 3, 5, 7, 9, 11, 12
+BRANCHED_M, APART_M, GLIDES_MPS, GLID_M, MOVED_M2, SINCE_S, RESTLESS_S, STRIDES = 0, 3, 5, 7, 9, 11, 12, 13
+REJECTED_MPS, BLOWN_M2PS4 = 14, 15
 """Where each begins in `loose`."""
 RATES, SQUARES, SECONDS, BIAS_RADPS, CHANGED, RESTED_S = 0, 3, 4, 5, 6, 7
 """Where each begins in `gyros`."""
@@ -65,7 +66,10 @@ class Boot(NamedTuple):
         loose: where it was when `free` began, 3 (m); then, across and up each: how far apart the two have
             been told to be (m); how fast it glides though it seems to stand, and nobody knows how far (m/s);
             how far that may have led (m); and what all this adds to the variance of its place (m²). How long
-            ago `free` began (s); for how long it has seemed to stand, but not to rest (s): 13.
+            ago `free` began (s); for how long it has seemed to stand, but not to rest (s); and since `free`
+            began: strides, how fast it was when a rest was not believed (m/s), and by how much its force has
+            changed from one sample to the next, squared (m²/s⁴): 16.
+        unheld: velocity (m/s) and way (m) that it seems to have while it stands, 6: that may move, too.
         gyros: what they have reported in this rest, summed up: rates 3, their squares, seconds; how well
             their biases are known (rad/s); what the bias of its heading is less sure by than any unit's
             ((rad/s)²); and how long ago a rest has told it, if that is still to be said (s): 8.
@@ -78,6 +82,7 @@ class Boot(NamedTuple):
     known: Array
     footing: Array
     loose: Array
+    unheld: Array
     gyros: Array
 
     @classmethod
@@ -90,7 +95,8 @@ class Boot(NamedTuple):
             np.zeros(TOLD),
             np.array([GRAVITY_MPS2, heading_rad, 0.0, 0.0]),
             np.zeros(5),
-            np.zeros(13),
+            np.zeros(16),
+            np.zeros(6),
             np.zeros(8),
         )
 
@@ -100,6 +106,8 @@ class Boot(NamedTuple):
         again.known[AXIS], again.known[AZIMUTH] = self.known[AXIS], self.known[AZIMUTH]
         again.footing[FLAT_M] = self.footing[FLAT_M]
         again.held.sensors[:] = self.held.sensors
+        again.known[GRAVITY] = self.known[GRAVITY]
+        again.loose[GLIDES_MPS : GLID_M + 2] = self.loose[GLIDES_MPS : GLID_M + 2]
         again.gyros[BIAS_RADPS] = self.gyros[BIAS_RADPS]
         return again
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit
 
+from estimator.graph.dense import Array
 from estimator.inertial.boot import (
     AXIS,
     AZIMUTH,
@@ -15,9 +16,11 @@ from estimator.inertial.boot import (
     STOOD,
     Boot,
 )
-from estimator.inertial.stance import stance_sigma
+from estimator.inertial.stance import ALIKE_S, stance_sigma
 from estimator.inertial.strapdown import correct, mend, stand_still
 
+UNHELD_S = 1.0
+"""What a boot is moved by while it seems to stand is forgotten in so long: its tilt is not known better."""
 STRIDE_S = 0.15
 """What has not stood for longer has made a stride."""
 FOOTHOLD = 4
@@ -30,11 +33,12 @@ RISE_SIGMA_M = 0.015
 
 
 @njit(cache=True, error_model="numpy")
-def hold(boot: Boot, step_s: float) -> float:
+def hold(boot: Boot, ahead: Array, step_s: float) -> float:
     """Hold a boot's velocity against nil where it stands, and its height against that of its last foothold.
 
     Args:
         boot: changed in place.
+        ahead: its acceleration by this sample, 3 (m/s²).
         step_s: time from the last sample to this one (s).
 
     Returns:
@@ -52,7 +56,17 @@ def hold(boot: Boot, step_s: float) -> float:
         if footing[STOOD] == FOOTHOLD:
             level_off(boot)
         face(boot)
+    _follow(boot, ahead, step_s)
     return sigma
+
+
+@njit(cache=True, error_model="numpy")
+def _follow(boot: Boot, ahead: Array, step_s: float) -> None:
+    """Sum up what a boot that stands is moved by all the same: in a lift, on a stretcher, where it slides."""
+    unheld, stands = boot.unheld, boot.footing[HELD_S] <= 2.0 * ALIKE_S
+    for c in range(3):
+        unheld[c] = unheld[c] * (1.0 - step_s / UNHELD_S) + step_s * ahead[c] if stands else 0.0
+        unheld[3 + c] += step_s * unheld[c]
 
 
 @njit(cache=True, error_model="numpy")

@@ -13,31 +13,31 @@ from estimator.inertial.boot import (
     APART_M,
     ATTITUDE,
     AXIS,
-    BIAS_RADPS,
+    BLOWN_M2PS4,
     BRANCHED_M,
     ERRORS,
     FORCE,
     GLID_M,
     GLIDES_MPS,
-    GRAVITY_MPS2,
     MOVED_M2,
+    REJECTED_MPS,
     RESTLESS_S,
     SINCE_S,
     STOOD,
+    STRIDES,
     VELOCITY,
     Boot,
     Strapdown,
 )
 from estimator.inertial.holding import face, level_off
-from estimator.inertial.levelling import LEVEL_SIGMA_RAD, doubt
 from estimator.inertial.rotations import turned_about
 from estimator.inertial.stance import ALIKE_S, QUIET
 from estimator.inertial.strapdown import mend, stand_still
 
 QUIET_S, AGAIN_S = 0.2, 0.3
 """What is quiet for so long may rest; nearer to each other, rests have the same error: they count once."""
-RESTS_S = 1.0
-"""What is quiet for so long rests, or is in a lift."""
+RESTS_S = 0.5
+"""What is quiet for so long after a blow rests."""
 BEGUN_MPS = 0.02
 """What seems to rest may just have begun to move, or not have ended to."""
 RESTING = 14.2
@@ -48,12 +48,17 @@ APART_SIGMA_M = 0.02
 """What both navigations may be apart by for reasons that neither knows of."""
 DRAGGED_S, DRAGGED_MPS = 1.0, 0.1
 """Who seems to stand for longer and never rests may crawl, of which that much may be missed."""
-STRIDE_S = 2.0
-"""What has been apart for less may be one stride, which both have followed differently."""
+RIDE_S = 2.0
+"""What has been apart for less is no speed that goes on."""
+BACK = 0.3
+"""Who was known to move rests when his speed has gone back to so much of it: whoever knows ever less would
+believe anything in the end."""
+BLOW_MPS2 = 10.0
+"""A force that changes by so much from one sample to the next has done more between them."""
+BELIEVED_OFF = 0.1
+"""What is off of a way that is believed, as a share."""
 DOUBTED = 3.0
 """Held by what seems to be a standstill each time, a navigation believes more of itself than is true."""
-TILTED_S = 1.0
-"""From one stride to the next standstills hold a tilt: so long a bias of gyros turns it."""
 CARRIED_MPS = 10.0
 """Nobody is carried faster: his unit measures something else."""
 LOST_MPS = 1.0
@@ -69,24 +74,37 @@ def loosen(boot: Boot, sigma_mps: float) -> None:
         sigma_mps: how fast it may be (m/s).
     """
     free, loose, quiet_s = boot.free, boot.loose, boot.felt[QUIET]
-    restless = quiet_s < QUIET_S and boot.footing[STOOD] > 1.0
-    loose[RESTLESS_S] = loose[RESTLESS_S] + ALIKE_S if restless else 0.0
-    if quiet_s < QUIET_S or loose[SINCE_S] < AGAIN_S:
-        speeds_m2 = np.diag(free.covariance)[VELOCITY:ATTITUDE]
-        if speeds_m2.max() > LOST_MPS**2:
-            _lose(boot)
-        return
-    rests_mps = np.sqrt(sigma_mps**2 + BEGUN_MPS**2)
-    if _squared(free, VELOCITY, free.velocity, rests_mps) < RESTING:
+    strides = boot.footing[STOOD] == 1.0
+    loose[STRIDES] += 1.0 if strides else 0.0
+    loose[RESTLESS_S] = 0.0 if strides or quiet_s > QUIET_S else loose[RESTLESS_S] + ALIKE_S
+    speeds_m2 = np.diag(free.covariance)[VELOCITY:ATTITUDE]
+    if speeds_m2.max() > LOST_MPS**2:
+        _lose(boot)
+    elif quiet_s > QUIET_S and loose[SINCE_S] > AGAIN_S:
+        _rest(boot, np.sqrt(sigma_mps**2 + BEGUN_MPS**2))
+
+
+@njit(cache=True, error_model="numpy")
+def _rest(boot: Boot, sigma_mps: float) -> None:
+    """It seems to rest: it does if its velocity may be nil, and has gone back to that if it was not."""
+    free, loose = boot.free, boot.loose
+    speed_mps = np.sqrt(np.dot(free.velocity, free.velocity))
+    back = loose[REJECTED_MPS] == 0.0 or speed_mps < BACK * loose[REJECTED_MPS]
+    if back and _squared(free, VELOCITY, free.velocity, sigma_mps) < RESTING:
         error = np.zeros(ERRORS)
-        stand_still(free, error, rests_mps)
+        stand_still(free, error, sigma_mps)
         mend(free, error)
-        if contradicts(boot):
+        apart = apart_m(boot)
+        if contradicts(boot) and np.dot(apart, apart) < (CARRIED_MPS * loose[SINCE_S]) ** 2:
             _believe(boot)
+        if boot.felt[QUIET] < loose[SINCE_S]:
+            # Who was given up while all was quiet rides on until something happens.
+            loose[GLIDES_MPS : GLID_M + 2] = 0.0
         branch(boot)
-        loose[GLIDES_MPS : GLID_M + 2] = 0.0
-    elif quiet_s > RESTS_S and not _squared(free, VELOCITY, free.velocity[:2], rests_mps) < RESTING:
-        # A blow that its accelerometers could not follow.
+        return
+    loose[REJECTED_MPS] = max(loose[REJECTED_MPS], speed_mps)
+    if boot.felt[QUIET] > RESTS_S and not loose[BLOWN_M2PS4] < BLOW_MPS2**2:
+        # Its accelerometers could not follow: what they made of a blow is no ride.
         _lose(boot)
         loose[GLIDES_MPS : GLID_M + 2] = 0.0
 
@@ -120,20 +138,23 @@ def apart_m(boot: Boot) -> Array:
 
 @njit(cache=True, error_model="numpy")
 def contradicts(boot: Boot) -> bool:
-    """Whether the free navigation is too far from the held one for what sensors may be off by."""
-    apart = apart_m(boot)
-    carried = np.dot(apart, apart) < (CARRIED_MPS * boot.loose[SINCE_S]) ** 2
-    return bool(carried and _squared(boot.free, 0, apart, APART_SIGMA_M) > MOVED)
+    """Whether the free navigation is too far from the held one for what sensors may be off by.
+
+    Only where the boot has seemed to stand all the time: strides both follow in their own ways.
+    """
+    stood = boot.loose[STRIDES] == 0.0
+    return bool(stood and _squared(boot.free, 0, apart_m(boot), APART_SIGMA_M) > MOVED)
 
 
 @njit(cache=True, error_model="numpy")
 def _believe(boot: Boot) -> None:
     """It has been moved while it seemed to stand, and now it rests: what the free navigation tells is so."""
     held, free, loose = boot.held, boot.free, boot.loose
-    for c in range(3):
-        held.place[c] = loose[BRANCHED_M + c] + free.place[c]
-    loose[MOVED_M2] += max(free.covariance[0, 0], free.covariance[1, 1])
-    loose[MOVED_M2 + 1] += free.covariance[2, 2]
+    apart = apart_m(boot)
+    held.place[:] += apart
+    across = max(free.covariance[0, 0], free.covariance[1, 1])
+    loose[MOVED_M2] += across + BELIEVED_OFF**2 * (apart[0] ** 2 + apart[1] ** 2)
+    loose[MOVED_M2 + 1] += free.covariance[2, 2] + BELIEVED_OFF**2 * apart[2] ** 2
     held.velocity[:] = free.velocity
     held.attitude[:] = free.attitude
     held.covariance[:FORCE, :FORCE] = free.covariance[:FORCE, :FORCE]
@@ -147,7 +168,7 @@ def branch(boot: Boot) -> None:
     held, free, loose = boot.held, boot.free, boot.loose
     loose[BRANCHED_M : BRANCHED_M + 3] = held.place
     loose[APART_M : APART_M + 2] = 0.0
-    loose[SINCE_S] = 0.0
+    loose[SINCE_S] = loose[STRIDES] = loose[REJECTED_MPS] = loose[BLOWN_M2PS4] = 0.0
     axis = int(boot.known[AXIS])
     there = np.arctan2(held.attitude[1, axis], held.attitude[0, axis])
     here = np.arctan2(free.attitude[1, axis], free.attitude[0, axis])
@@ -161,19 +182,22 @@ def branch(boot: Boot) -> None:
 
 @njit(cache=True, error_model="numpy")
 def _lose(boot: Boot) -> None:
-    """Give up the free navigation: it begins anew with what the held one knows."""
+    """Give up the free navigation: it goes on with the velocity that the held one has."""
     held, free, loose = boot.held, boot.free, boot.loose
+    far_m = np.sqrt(loose[APART_M] ** 2 + loose[APART_M + 1] ** 2)
+    speed_mps = max(loose[REJECTED_MPS], far_m / max(loose[SINCE_S], RIDE_S))
     for c in range(2):
-        if loose[SINCE_S] > STRIDE_S:
-            speed_mps = loose[APART_M + c] / loose[SINCE_S]
-            loose[GLIDES_MPS + c] = max(loose[GLIDES_MPS + c], speed_mps)
+        if loose[STRIDES] > 0.0:
+            loose[GLIDES_MPS + c] = loose[GLID_M + c] = 0.0
+        elif loose[SINCE_S] > RIDE_S and far_m > 0.0:
+            glides_mps = speed_mps * loose[APART_M + c] / far_m
+            loose[GLIDES_MPS + c] = max(loose[GLIDES_MPS + c], glides_mps)
+    # What gyros and rests have told of its attitude and its sensors stays as good as it is.
     free.velocity[:] = held.velocity
-    free.attitude[:] = held.attitude
-    free.sensors[:6], free.sensors[6:] = 0.0, held.sensors[6:]
-    tilt_rad = LEVEL_SIGMA_RAD[0] + boot.gyros[BIAS_RADPS] * TILTED_S
-    doubt(free, held.attitude[2] * GRAVITY_MPS2, 0.0, tilt_rad, boot.gyros[BIAS_RADPS])
-    known = held.covariance[VELOCITY:FORCE, VELOCITY:FORCE]
-    free.covariance[VELOCITY:FORCE, VELOCITY:FORCE] += DOUBTED**2 * known
+    free.covariance[VELOCITY:ATTITUDE, :] = 0.0
+    free.covariance[:, VELOCITY:ATTITUDE] = 0.0
+    for c in range(VELOCITY, ATTITUDE):
+        free.covariance[c, c] = DOUBTED**2 * held.covariance[c, c]
     branch(boot)
 
 

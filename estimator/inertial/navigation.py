@@ -9,6 +9,7 @@ from estimator.graph.dense import Array
 from estimator.inertial.advancing import advance
 from estimator.inertial.boot import (
     ATTITUDE,
+    BIAS_RADPS,
     CHANGED,
     FLAT_M2,
     FOOTHOLD_M,
@@ -56,12 +57,12 @@ class Led(Displacement, tag="led", frozen=True):
         up_m2: variance of its height beside `sigma_m`, as floors may not be flat (m²).
         bias_rad2ps2: variance that the bias of its heading takes: it has begun without a rest, or a rest has
             told that it was another one ((rad/s)²).
-        rested: a rest has, some seconds ago: it is nearly nil now.
+        rested_radps: a rest has, some seconds ago: it is nil now but for so much (rad/s); nil: none has.
     """
 
     up_m2: float = 0.0
     bias_rad2ps2: float = 0.0
-    rested: bool = False
+    rested_radps: float = 0.0
 
 
 class Navigation(NamedTuple):
@@ -198,7 +199,7 @@ def _led(
             told_t, unsure_m2 = t, 0.0
             boot.loose[:3] -= boot.held.place
             boot.footing[FOOTHOLD_M] -= boot.held.place[2]
-            boot.held.place[:] = 0.0
+            boot.held.place[:] = boot.unheld[3:] = 0.0
             boot.footing[FLAT_M2] = 0.0
             boot.loose[MOVED_M2 : MOVED_M2 + 2] = boot.gyros[CHANGED] = 0.0
             if boot.gyros[RESTED_S] > TOLD_AFTER_S:
@@ -220,6 +221,8 @@ def _displacement(boot: Boot, node: str, from_t: float, t: float, unsure_m2: flo
     speed_m2 = max(float(held.covariance[velocities, velocities].max()), 0.0) * (t - from_t) ** 2
     way_m2 = STRIDE_SIGMA_M_PER_ROOT_M**2 * float(np.sqrt(np.dot(held.place, held.place)))
     moved_m2, lifted_m2 = boot.loose[MOVED_M2 : MOVED_M2 + 2].tolist()
+    # What it stands on may have moved: then it went so far at least.
+    moved_m2 = max(moved_m2, float(np.dot(boot.unheld[3:], boot.unheld[3:])))
     return Led(
         t=t,
         node=node,
@@ -229,5 +232,5 @@ def _displacement(boot: Boot, node: str, from_t: float, t: float, unsure_m2: flo
         sigma_m=math.sqrt(way_m2 + speed_m2 + moved_m2 + unsure_m2) + 1e-6,
         up_m2=float(boot.footing[FLAT_M2]) + max(lifted_m2 - moved_m2, 0.0),
         bias_rad2ps2=float(boot.gyros[CHANGED]),
-        rested=bool(boot.gyros[RESTED_S] > TOLD_AFTER_S),
+        rested_radps=float(boot.gyros[BIAS_RADPS]) if boot.gyros[RESTED_S] > TOLD_AFTER_S else 0.0,
     )

@@ -8,16 +8,18 @@ from estimator.inertial.boot import BIAS_RADPS, CHANGED, ERRORS, RATE, RATES, RE
 from estimator.inertial.stance import QUIET
 from estimator.inertial.strapdown import RATE_WALK, correct, mend
 
-REST_S = 1.0
+REST_S = 2.0
 """So long a rest tells a bias; a longer one tells it again."""
 TURNING_RADPS = 0.1
 """Who turns so fast does not rest: no gyro is off by 6 degrees a second."""
 TREMBLES = 0.3
 """What is left of a tremble in its mean over a second, as a share."""
 RESTED_RADPS, UNRESTED_RADPS = 2e-3, 0.03
-"""How well a bias is known after a rest, at best, and before the first one."""
-ANEW_RAD2PS2 = 1.0
-"""After a rest that has told another bias, that of a heading has nothing to do with what it was before."""
+"""How well a bias is known where the first half second was a rest, and before any rest."""
+SETTLES_RADPS = 0.01
+"""A boot that seems to rest settles by a degree in two seconds."""
+ANEW_RAD2PS2 = 0.1**2
+"""After a rest that has told another bias, that of a heading has little to do with what it was before."""
 TOLD_AFTER_S = 4.5
 """A bias counts from one keyframe to the next, which are two seconds apart: the new one is told when it has
 begun for certain."""
@@ -50,8 +52,9 @@ def rest(boot: Boot, rate: Array, step_s: float) -> None:
     mean = gyros[RATES : RATES + 3] / gyros[SECONDS]
     tremble = max(gyros[SQUARES] / gyros[SECONDS] - np.dot(mean, mean), 0.0)
     gyros[:BIAS_RADPS] = 0.0
-    if np.dot(mean, mean) < TURNING_RADPS**2:
-        _take(boot, mean, np.sqrt(RESTED_RADPS**2 + TREMBLES**2 * tremble), step_s)
+    # Once it is known, a slow turn is more likely than another bias.
+    if gyros[BIAS_RADPS] > GRANTED_RADPS and np.dot(mean, mean) < TURNING_RADPS**2:
+        _take(boot, mean, np.sqrt(SETTLES_RADPS**2 + TREMBLES**2 * tremble), step_s)
 
 
 @njit(cache=True, error_model="numpy")

@@ -49,7 +49,7 @@ def freed(boot: Strapdown, force: Array, rate: Array, found: Array) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def carry(boot: Strapdown, sample: Array, gravity_mps2: float, size: int, step_s: float) -> None:
+def carry(boot: Strapdown, sample: Array, gravity_mps2: float, size: int, step_s: float) -> Array:
     """Take in a sample.
 
     Args:
@@ -58,6 +58,9 @@ def carry(boot: Strapdown, sample: Array, gravity_mps2: float, size: int, step_s
         gravity_mps2: as it is felt.
         size: how many of the errors are states: all, or 9, where its sensors are taken for perfect.
         step_s: time from the last sample to this one (s).
+
+    Returns:
+        Its acceleration, 3 (m/s²).
     """
     angle, halfway, ahead = np.empty(3), np.empty((3, 3)), np.empty(3)
     squared = 0.0
@@ -76,6 +79,7 @@ def carry(boot: Strapdown, sample: Array, gravity_mps2: float, size: int, step_s
         boot.velocity[c] += step_s * ahead[c]
         if size == ERRORS:
             boot.sensors[c] *= kept
+    return ahead
 
 
 @njit(cache=True, error_model="numpy")

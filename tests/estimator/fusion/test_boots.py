@@ -251,6 +251,7 @@ def test_who_walks_down_a_gentle_slope_is_not_said_to_be_on_its_top_for_certain(
 
 
 FACES_EAST = structs.replace(BEGINS, heading_rad=0.0)
+ABOUT_HERE = structs.replace(FACES_EAST, sigma_m=1.0)
 
 
 def later(gait: Gait) -> Gait:
@@ -258,20 +259,24 @@ def later(gait: Gait) -> Gait:
 
 
 @pytest.mark.parametrize("bias_radps", [-0.04, 0.04])
-@pytest.mark.parametrize("radio", [False, True])
+@pytest.mark.parametrize("radios", [False, True])
 def test_who_walks_when_his_unit_is_switched_on_is_where_his_ellipse_says(
-    bias_radps: float, radio: bool
+    bias_radps: float, radios: bool
 ) -> None:
     """Nothing has told the biases of its gyros until he rests; then they are others than ranges had told."""
     gait = later(Moves().walks(20).rests(3.0).walks(20).gait())
     gait = gait._replace(rate=gait.rate + bias_radps)
-    more = [ANCHOR, *heard(gait, (0.0, 10.0, 1.0), 0.1, 0.5)] if radio else []
+    far_m = (60.0, 10.0, 1.0)
+    far = structs.replace(ANCHOR, node="a2", position_m=far_m)
+    near = heard(gait, (0.0, 10.0, 1.0), 0.1, 0.5)
+    more = [ANCHOR, far, *near, *(structs.replace(r, b="a2") for r in heard(gait, far_m, 0.1, 0.5))]
+    more = more if radios else []
     tracker = KirchhoffTracker()
-    tracker.fold([FACES_EAST, *more[:1]])
+    tracker.fold([ABOUT_HERE, *more[:2]])
     off = []
     for reading in gait.readings():
         until_t = reading.until_t
-        tracker.fold([reading, *(r for r in more[1:] if until_t - 1.0 < r.t <= until_t)])
+        tracker.fold([reading, *(r for r in more[2:] if until_t - 1.0 < r.t <= until_t)])
         estimate = shown(tracker)
         off.append(outside(estimate.position_m, estimate.covariance_m2, truth_m(gait, estimate.t)))
     # Of thirty pictures one may be farther off than its ellipse of 95 %.

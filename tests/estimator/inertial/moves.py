@@ -7,6 +7,7 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
 from estimator.graph.dense import Array
+from estimator.inertial.boot import GRAVITY_MPS2
 from tests.estimator.inertial.gait import HALF_S, LIFTED_M, STEEPEST_RAD, Gait, felt, smooth
 
 KNEELS_RAD, KNEELS_S = 1.2, 1.0
@@ -42,6 +43,10 @@ class Moves:
         there = self._here + np.array([0.0, 0.0, 0.0, 0.0, angle_rad, 0.0])
         return self._go(KNEELS_S, there).rests(0.5)
 
+    def turns(self, angle_rad: float, duration_s: float) -> Self:
+        """It turns on the spot."""
+        return self._go(duration_s, self._here + np.array([0.0, 0.0, 0.0, angle_rad, 0.0, 0.0]))
+
     def walks(self, strides: int) -> Self:
         """Strides on the level."""
         for _ in range(strides):
@@ -72,9 +77,25 @@ class Moves:
             until += takes_s + rests_s
         return self
 
-    def rides(self, duration_s: float, up_m: float, starts_s: float = 1.5) -> Self:
-        """It stands in a lift."""
-        return self._carried(duration_s, starts_s, np.array([0.0, 0.0, up_m]), 0.0, 0.0)
+    def rides(self, duration_s: float, way_m: float, starts_s: float = 1.5, upwards: bool = True) -> Self:
+        """It stands in a lift, or on a trolley."""
+        way = np.array([0.0, 0.0, way_m]) if upwards else self._ahead(way_m)[:3] - self._here[:3]
+        return self._carried(duration_s, starts_s, way, 0.0, 0.0)
+
+    def jumps(self, up_m: float, lands_s: float) -> Self:
+        """It takes off, falls, and is stopped within so long."""
+        speed = np.sqrt(2.0 * GRAVITY_MPS2 * up_m)
+        takes_off = np.arange(1, round(0.25 / HALF_S) + 1) * HALF_S
+        rises = 0.5 * speed / 0.25 * takes_off**2
+        flies = np.arange(1, round(2.0 * speed / GRAVITY_MPS2 / HALF_S) + 1) * HALF_S
+        falls = rises[-1] + speed * flies - 0.5 * GRAVITY_MPS2 * flies**2
+        last = speed - GRAVITY_MPS2 * flies[-1]
+        lands = np.arange(1, round(lands_s / HALF_S) + 1) * HALF_S
+        stops = falls[-1] + last * lands - 0.5 * last / lands[-1] * lands**2
+        up = np.concatenate([rises, falls, stops])
+        poses = np.tile(self._here, (len(up), 1))
+        poses[:, 2] += gaussian_filter1d(up, 0.003 / HALF_S, mode="nearest")
+        return self._add(poses)
 
     def carried(self, duration_s: float, ahead_m: float) -> Self:
         """It lies on a stretcher, which two people carry at a walk."""

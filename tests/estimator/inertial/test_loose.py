@@ -39,7 +39,7 @@ def test_who_crawls_is_followed(crawl: tuple[int, float, float, float, float], u
     assert texts == []
     way_m = crawl[0] * crawl[1]
     assert np.linalg.norm(off_m(found, gait)[:2]) < 0.1 * way_m
-    assert unsure_m(found) < 0.25 * way_m
+    assert unsure_m(found) < 0.35 * way_m
 
 
 @pytest.mark.parametrize("unit", UNITS)
@@ -56,7 +56,7 @@ def test_who_kneels_and_shifts_stays_where_he_is(unit: Unit) -> None:
     found, texts = followed(unit.feels(gait).readings())
     assert texts == []
     assert np.linalg.norm(off_m(found, gait)[:2]) < 0.5
-    assert unsure_m(found) < 0.5
+    assert unsure_m(found) < 3.0
 
 
 @pytest.mark.parametrize("unit", UNITS)
@@ -93,3 +93,31 @@ def test_a_blow_that_no_sample_saw_does_not_carry_who_stands_away() -> None:
     assert texts == []
     assert np.linalg.norm(where(found)) < 1.0
     assert unsure_m(found) < 8.0
+
+
+@pytest.mark.parametrize("bias_mps2", [0.1, 0.2])
+def test_who_walks_and_turns_without_a_rest_is_no_less_sure_for_a_bad_accelerometer(bias_mps2: float) -> None:
+    moves = Moves().rests(2.0)
+    for _ in range(10):
+        moves.walks(6).turns(0.8, 1.0)
+    gait = moves.rests(2.0).gait()
+    for seed in range(3):
+        found, _ = followed(Unit(seed, bias_mps2=bias_mps2).feels(gait).readings())
+        assert unsure_m(found) < 1.5
+
+
+@pytest.mark.parametrize("g_most", [8.0, 16.0])
+@pytest.mark.parametrize("lasts_s", [0.01, 0.02])
+def test_who_jumps_and_stands_is_on_his_storey(g_most: float, lasts_s: float) -> None:
+    """The landing is more than the accelerometers can tell."""
+    gait = Moves().rests(2.0).walks(2).rests(1.0).jumps(0.4, lasts_s).rests(40.0).gait()
+    clipped = gait._replace(force=np.clip(gait.force, -9.8 * g_most, 9.8 * g_most))
+    found, _ = followed(Unit(1).feels(clipped).readings())
+    assert abs(off_m(found, clipped)[2]) < 1.5
+    assert height_sigma_m(found) < 4.0
+
+
+def test_a_trolley_is_not_shown_where_it_was_loaded_for_certain() -> None:
+    gait = Moves().rests(3.0).walks(2).rests(3.0).rides(30.0, 40.0, 1.5, upwards=False).rests(3.0).gait()
+    found, _ = followed(Unit(1).feels(gait).readings())
+    assert np.linalg.norm(off_m(found, gait)) < 2.5 * unsure_m(found)
