@@ -16,6 +16,7 @@ from estimator.inertial.boot import (
     STOOD,
     Boot,
 )
+from estimator.inertial.rotations import azimuth_rad
 from estimator.inertial.stance import ALIKE_S, stance_sigma
 from estimator.inertial.strapdown import correct, mend, stand_still
 
@@ -72,9 +73,7 @@ def _follow(boot: Boot, ahead: Array, step_s: float) -> None:
 @njit(cache=True, error_model="numpy")
 def face(boot: Boot) -> None:
     """Note what its x axis faces: it stands."""
-    axis = int(boot.known[AXIS])
-    azimuth = np.arctan2(boot.held.attitude[1, axis], boot.held.attitude[0, axis])
-    boot.known[HEADING] = azimuth - boot.known[AZIMUTH]
+    boot.known[HEADING] = azimuth_rad(boot.held.attitude, int(boot.known[AXIS])) - boot.known[AZIMUTH]
 
 
 @njit(cache=True, error_model="numpy")

@@ -22,7 +22,7 @@ from estimator.inertial.boot import (
     Strapdown,
 )
 from estimator.inertial.resting import GRANTED_RADPS, RESTED_RADPS, UNRESTED_RADPS
-from estimator.inertial.rotations import level
+from estimator.inertial.rotations import azimuth_rad, level
 from estimator.inertial.strapdown import FORCE_SIGMA_MPS2, SCALE_SIGMA, mend
 
 GRAVITY_OFF_MPS2 = 0.3
@@ -89,37 +89,26 @@ def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
         if abs(held.attitude[2, axis]) <= abs(held.attitude[2, 1 - axis]):
             boot.known[AXIS] = float(axis)
     axis = int(boot.known[AXIS])
-    azimuth = np.arctan2(held.attitude[1, axis], held.attitude[0, axis])
-    boot.known[AZIMUTH] = azimuth - boot.known[HEADING]
-    tilt, speed = TILT_SIGMA_RAD[0 if rests else 1], START_SIGMA_MPS[0 if rests else 1]
+    boot.known[AZIMUTH] = azimuth_rad(held.attitude, axis) - boot.known[HEADING]
+    unrested = 0 if rests else 1
     for c in range(3):
-        held.covariance[VELOCITY + c, VELOCITY + c] = speed * speed
+        held.covariance[VELOCITY + c, VELOCITY + c] = START_SIGMA_MPS[unrested] ** 2
     for c in range(2):
-        held.covariance[ATTITUDE + c, ATTITUDE + c] = tilt * tilt
+        held.covariance[ATTITUDE + c, ATTITUDE + c] = TILT_SIGMA_RAD[unrested] ** 2
     free.attitude[:] = held.attitude
     free.sensors[:] = held.sensors
-    unrested = 0 if rests else 1
-    doubt(free, mean, SWING_SIGMA_MPS[unrested], LEVEL_SIGMA_RAD[unrested], boot.gyros[BIAS_RADPS])
+    _doubt(free, mean, unrested, boot.gyros[BIAS_RADPS])
     if rests:
         _weigh(free, mean)
     told[0] = -1.0
 
 
 @njit(cache=True, error_model="numpy")
-def doubt(boot: Strapdown, force: Array, speed_mps: float, tilt_rad: float, bias_radps: float) -> None:
-    """What is not known of a navigation whose sensors are states, when it has just been levelled.
-
-    Args:
-        boot: its covariance is changed in place.
-        force: what it was levelled by, in the sensor's axes, 3 (m/s²).
-        speed_mps: how fast it may be (m/s).
-        tilt_rad: how much its attitude may be tilted beside what its accelerometers are off by (rad).
-        bias_radps: how well the biases of its gyros are known (rad/s).
-    """
+def _doubt(boot: Strapdown, force: Array, unrested: int, bias_radps: float) -> None:
+    """What is not known of a navigation whose sensors are states, and which has just been levelled."""
     covariance, attitude = boot.covariance, boot.attitude
-    covariance[:] = 0.0
     for c in range(3):
-        covariance[VELOCITY + c, VELOCITY + c] = speed_mps**2
+        covariance[VELOCITY + c, VELOCITY + c] = SWING_SIGMA_MPS[unrested] ** 2
         covariance[FORCE + c, FORCE + c] = FORCE_SIGMA_MPS2**2
         covariance[SCALE + c, SCALE + c] = SCALE_SIGMA**2
         covariance[RATE + c, RATE + c] = bias_radps**2
@@ -133,7 +122,7 @@ def doubt(boot: Strapdown, force: Array, speed_mps: float, tilt_rad: float, bias
     covariance[FORCE:RATE, ATTITUDE:FORCE] = (tilted @ offs).T
     covariance[ATTITUDE:FORCE, ATTITUDE:FORCE] = tilted @ offs @ tilted.T
     for c in range(2):
-        covariance[ATTITUDE + c, ATTITUDE + c] += tilt_rad**2
+        covariance[ATTITUDE + c, ATTITUDE + c] += LEVEL_SIGMA_RAD[unrested] ** 2
 
 
 @njit(cache=True, error_model="numpy")

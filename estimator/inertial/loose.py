@@ -30,7 +30,7 @@ from estimator.inertial.boot import (
     Strapdown,
 )
 from estimator.inertial.holding import face, level_off
-from estimator.inertial.rotations import turned_about
+from estimator.inertial.rotations import azimuth_rad, turned_about
 from estimator.inertial.stance import ALIKE_S, QUIET
 from estimator.inertial.strapdown import mend, stand_still
 
@@ -103,7 +103,7 @@ def _rest(boot: Boot, sigma_mps: float) -> None:
         branch(boot)
         return
     loose[REJECTED_MPS] = max(loose[REJECTED_MPS], speed_mps)
-    if boot.felt[QUIET] > RESTS_S and not loose[BLOWN_M2PS4] < BLOW_MPS2**2:
+    if boot.felt[QUIET] > RESTS_S and loose[BLOWN_M2PS4] >= BLOW_MPS2**2:
         # Its accelerometers could not follow: what they made of a blow is no ride.
         _lose(boot)
         loose[GLIDES_MPS : GLID_M + 2] = 0.0
@@ -113,11 +113,8 @@ def _rest(boot: Boot, sigma_mps: float) -> None:
 def _squared(boot: Strapdown, state: int, value: Array, sigma: float) -> float:
     """How unlikely errors of `value`, from `state` on, are by their covariance: vᵀ (P + σ² I)⁻¹ v."""
     size = len(value)
-    spread, left, found = (
-        boot.covariance[state : state + size, state : state + size].copy(),
-        value.copy(),
-        0.0,
-    )
+    spread = boot.covariance[state : state + size, state : state + size].copy()
+    left, found = value.copy(), 0.0
     for c in range(size):
         spread[c, c] += sigma * sigma
     for c in range(size):
@@ -170,9 +167,8 @@ def branch(boot: Boot) -> None:
     loose[APART_M : APART_M + 2] = 0.0
     loose[SINCE_S] = loose[STRIDES] = loose[REJECTED_MPS] = loose[BLOWN_M2PS4] = 0.0
     axis = int(boot.known[AXIS])
-    there = np.arctan2(held.attitude[1, axis], held.attitude[0, axis])
-    here = np.arctan2(free.attitude[1, axis], free.attitude[0, axis])
-    free.attitude[:] = turned_about(np.array([0.0, 0.0, there - here]), free.attitude)
+    turned_rad = azimuth_rad(held.attitude, axis) - azimuth_rad(free.attitude, axis)
+    free.attitude[:] = turned_about(np.array([0.0, 0.0, turned_rad]), free.attitude)
     free.place[:] = 0.0
     free.covariance[:3, :] = 0.0
     free.covariance[:, :3] = 0.0

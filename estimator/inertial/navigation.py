@@ -38,8 +38,8 @@ FOLLOWED, TOLD = 0.2, 0.1
 and so much a piece tells of how much they jitter."""
 BRIDGED_S = 0.1
 """So long a gap is bridged: between a swing's samples there is a straight line for a tenth of a second."""
-BRIDGED_OFF = 0.3
-"""What a bridge may be off by, as a share of what goes on in it."""
+BRIDGED_OFF, FASTER_OFF = 0.3, 0.5
+"""What a bridge may be off by, as a share of what goes on in it; and so much of its forces nothing holds."""
 STRIDE_SIGMA_M_PER_ROOT_M = 0.02
 """Random error of a stride, more than the filter itself believes, which takes each standstill for perfect:
 published errors of ZUPT-aided units are 0.3 to 1 % of ways of some ten strides, heights as much."""
@@ -163,7 +163,7 @@ def _joined(
     for each in (boot.held, boot.free):
         each.covariance[range(ATTITUDE, FORCE), range(ATTITUDE, FORCE)] += turned_rad2
     ahead = bridge[:, :3] @ boot.free.attitude.T - (0.0, 0.0, GRAVITY_MPS2)
-    faster_m2ps2 = (0.5 * off_s) ** 2 * float((ahead**2).sum(axis=1).max())
+    faster_m2ps2 = (FASTER_OFF * off_s) ** 2 * float((ahead**2).sum(axis=1).max())
     boot.free.covariance[range(VELOCITY, ATTITUDE), range(VELOCITY, ATTITUDE)] += faster_m2ps2
     known = known._replace(
         t=known.t + off_s - missing * step_s, unsure_m2=known.unsure_m2 + lost_m2, boot=boot
@@ -210,9 +210,8 @@ def _led(
 
 def _sound(boot: Boot) -> bool:
     """Whether it moves as a boot may, and knows how well it knows that."""
-    held = boot.held
-    speed = float(np.sqrt(np.dot(held.velocity, held.velocity)))
-    return speed < FASTEST_MPS and all(bool(np.isfinite(array).all()) for array in held)
+    speed = float(np.sqrt(np.dot(boot.held.velocity, boot.held.velocity)))
+    return speed < FASTEST_MPS and all(bool(np.isfinite(array).all()) for array in (*boot.held, *boot.free))
 
 
 def _displacement(boot: Boot, node: str, from_t: float, t: float, unsure_m2: float) -> Led:

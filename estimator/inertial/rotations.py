@@ -44,6 +44,17 @@ def turned_about(angle: Array, attitude: Array) -> Array:
 
 
 @njit(cache=True, error_model="numpy")
+def azimuth_rad(attitude: Array, axis: int) -> float:
+    """What an axis of the sensor faces, seen from above, from east (rad).
+
+    Args:
+        attitude: 3 × 3.
+        axis: 0: the x axis; 1: the y axis.
+    """
+    return float(np.arctan2(attitude[1, axis], attitude[0, axis]))
+
+
+@njit(cache=True, error_model="numpy")
 def level(up: Array, axis: int, facing_rad: float) -> Array:
     """The attitude in which `up` points up, and the x or y axis, seen from above, faces somewhere.
 
