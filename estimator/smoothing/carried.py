@@ -11,8 +11,16 @@ from estimator.graph.kirchhoff import marginalised
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.groups import Group
 from estimator.smoothing.layout import Layout
-from estimator.smoothing.turned import change_pairs, moved_from, turn, turn_between, turning
-from estimator.smoothing.walks import PLACES, STATES
+from estimator.smoothing.turned import (
+    Turning,
+    change_pairs,
+    moved_from,
+    pivot,
+    turn,
+    turn_between,
+    turning,
+)
+from estimator.smoothing.walks import HEADING, PLACES, STATES
 
 
 class Shared(NamedTuple):
@@ -37,6 +45,9 @@ class Carried:
     Args:
         layout: of the window.
         prior: what is known from before.
+
+    Attributes:
+        pivot_m: what the map is turned about, east and north, 2 (m).
     """
 
     def __init__(self, layout: Layout, prior: Prior) -> None:
@@ -50,14 +61,16 @@ class Carried:
             # Held where they were, they would not let the map turn.
             self._matrix, self._vector = marginalised(prior.matrix, prior.vector, gone, kept)
         self._shared: list[Shared] = []
-        self._base_m = np.array(layout.state.base_place()[:2])
-        self._places, self._speeds = (np.searchsorted(kept, pairs) for pairs in _turning(prior, at))
+        changed = _turning(prior, at, kept)
+        self._places, self._speeds = changed.places, changed.speeds
+        base_m = np.array(layout.state.base_place()[:2])
+        self.pivot_m = pivot(self._matrix, self._reference, changed, base_m)
         self._turning = np.concatenate([self._places, self._speeds])
 
     def first(self, x: Array) -> Array:
         """The estimate with the border where the prior was linearised, turned as the map is now, flat."""
         first, there = x.copy(), self._reference.copy()
-        there[self._places] = self._base_m + turn(there[self._places] - self._base_m, self._turned_by(x))
+        there[self._places] = self.pivot_m + turn(there[self._places] - self.pivot_m, self._turned_by(x))
         lasting = self._at >= self._size
         first[self._at[lasting]] = there[lasting]
         return first
@@ -101,26 +114,29 @@ class Carried:
         return Shared(moving, lasting, own, rest)
 
     def _turned_by(self, x: Array) -> float:
-        """By how much the map is turned about the base since the prior was linearised (rad)."""
-        was_m = self._reference[self._places] - self._base_m
-        return turn_between(was_m, x[self._at[self._places]] - self._base_m)
+        """By how much the map is turned about the pivot since the prior was linearised (rad)."""
+        was_m = self._reference[self._places] - self.pivot_m
+        return turn_between(was_m, x[self._at[self._places]] - self.pivot_m)
 
     def _moved(self, x: Array, turned_by: float) -> Array:
         """What the prior takes for deviations from its reference: see `turned.moved_from`."""
         pairs = self._places, self._speeds
-        return np.asarray(moved_from(self._reference, x[self._at], *pairs, self._base_m, turned_by))
+        return np.asarray(moved_from(self._reference, x[self._at], *pairs, self.pivot_m, turned_by))
 
 
-def _turning(prior: Prior, columns: Indices) -> tuple[Indices, Indices]:
-    """Which of a prior's numbers are places that are still there, and which velocities: east and north."""
-    places, speeds, start = [], [], 0
+def _turning(prior: Prior, columns: Indices, kept: Indices) -> Turning:
+    """Which of a prior's numbers change with a turn of the map, counted among those that are still there."""
+    places, speeds, headings, start = [], [], [], 0
     for kind, _ in prior.keys:
         if kind in ("walk", "free", "stand") and columns[start] >= 0:
             places.append((start, start + 1))
         if kind == "free" and columns[start + PLACES] >= 0:
             speeds.append((start + PLACES, start + PLACES + 1))
+        if kind == "walk" and columns[start + HEADING] >= 0:
+            headings.append(start + HEADING)
         start += SIZES[kind]
-    return np.array(places, dtype=np.intp).reshape(-1, 2), np.array(speeds, dtype=np.intp).reshape(-1, 2)
+    pairs = [np.searchsorted(kept, np.array(each, dtype=np.intp).reshape(-1, 2)) for each in (places, speeds)]
+    return Turning(pairs[0], pairs[1], np.searchsorted(kept, np.array(headings, dtype=np.intp)))
 
 
 def _columns(layout: Layout, key: Key) -> Indices:

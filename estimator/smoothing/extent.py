@@ -46,7 +46,7 @@ def trim(problem: Problem, solved: Solved) -> tuple[Prior, float] | None:
         return None
     cut = int(np.searchsorted(layout.grid, layout.grid[-1] - longest))
     before = problem.assemble(solved.x, solved.linear, solved.weighted, solved.motions, cut)
-    left = turned(before.remainder(cut), layout, problem.first(solved.x), solved.x)
+    left = turned(before.remainder(cut), layout, problem.pivot_m, problem.first(solved.x), solved.x)
     keys: list[Key] = []
     at: list[Indices] = []
     epochs: dict[int, float] = {}

@@ -123,6 +123,13 @@ class Problem:
         """
         return Linearised(self._jacobian(x), self.rows.residual(x))
 
+    @property
+    def pivot_m(self) -> Array:
+        """What the map is turned about, east and north, 2 (m)."""
+        return (
+            np.array(self.layout.state.base_place()[:2]) if self._carried is None else self._carried.pivot_m
+        )
+
     def first(self, x: Array) -> Array:
         """Where rows are linearised at an estimate, flat."""
         return x if self._carried is None else self._carried.first(x)

@@ -8,10 +8,7 @@ from estimator.fusion.swings import LOOSE_RAD, arc_m2, swung_m2
 from estimator.graph.dense import Array
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.solved import Solved
-from estimator.smoothing.walks import STATES
-
-HEADING = 3
-"""Which of a state's numbers is the heading."""
+from estimator.smoothing.walks import HEADING, STATES
 
 
 def responses(layout: Layout, solved: Solved, columns: Sequence[int]) -> Array:

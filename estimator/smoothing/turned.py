@@ -7,6 +7,8 @@ Huang, Mourikis, Roumeliotis 2010). So what is known from before is turned along
 where its reference moves.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
@@ -15,22 +17,62 @@ from estimator.smoothing.chain import Remainder
 from estimator.smoothing.layout import Layout
 
 STEADY_M = 2.0
-"""A place as far from the base as this, that seems to have gone round it, may as well have been moved."""
+"""A place as far from the pivot as this, that seems to have gone round it, may as well have been moved."""
 UNIT_M = 1.0
-"""Nearer than this to the base, a place hardly moves when the map is turned."""
+"""Nearer than this to the pivot, a place hardly moves when the map is turned."""
 FAR = 0.5
-"""A place that has moved by more than this share of its way from the base is not where it was thought to be:
+"""A place that has moved by more than this share of its way from the pivot is not where it was thought to be:
 to say there what was said here would make up knowledge, or lose it."""
+ANYWHERE_M = 1000.0
+"""Where no reading holds the map, it is turned about the base, give or take this."""
+
+
+class Turning(NamedTuple):
+    """Which numbers change when the map is turned as a whole.
+
+    Attributes:
+        places: east and north of places, m × 2.
+        speeds: those of velocities, k × 2.
+        headings: of units, h.
+    """
+
+    places: Indices
+    speeds: Indices
+    headings: Indices
+
+
+def pivot(matrix: Array, reference: Array, changed: Turning, base_m: Array) -> Array:
+    """The place about which a turn of the whole map is known least, 2 (m).
+
+    A turn about c moves places r by J (r − c), velocities v by J v and headings by 1: g₁ + T t, where T moves
+    all places by t = −J c. What is known of it, (g₁ + T t)ᵀ L (g₁ + T t), is least for TᵀL T t = −TᵀL g₁.
+
+    Args:
+        matrix: L of what is known, n × n.
+        reference: where it was linearised, n.
+        changed: which of the numbers change with a turn.
+        base_m: east and north of the base, 2 (m).
+    """
+    places, speeds, headings = changed
+    turn_all, move_all = np.zeros(len(reference)), np.zeros((len(reference), 2))
+    turn_all[places] = across(reference[places] - base_m)
+    turn_all[speeds] = across(reference[speeds])
+    turn_all[headings] = 1.0
+    move_all[places, [0, 1]] = 1.0
+    told = matrix @ move_all
+    held = move_all.T @ told + np.eye(2) / ANYWHERE_M**2
+    moved_m = np.asarray(np.linalg.solve(held, -(told.T @ turn_all)), dtype=np.float64)
+    return np.asarray(base_m + across(moved_m[None])[0])
 
 
 @njit(cache=True)
 def turn_between(was_m: Array, now_m: Array) -> float:
-    """By how much places are turned about the base, by least squares (rad), less than a quarter turn.
+    """By how much places are turned about the pivot, by least squares (rad), less than a quarter turn.
 
-    Somewhat less than it is where all of them are near the base: they may as well have been moved.
+    Somewhat less than it is where all of them are near the pivot: they may as well have been moved.
 
     Args:
-        was_m: from the base to where they were, m × 2.
+        was_m: from the pivot to where they were, m × 2.
         now_m: to where they are, m × 2.
     """
     across = along = 0.0
@@ -61,7 +103,7 @@ def across(ways: Array) -> Array:
 
 @njit(cache=True)
 def moved_from(
-    reference: Array, here: Array, places: Indices, speeds: Indices, base_m: Array, turned_by: float
+    reference: Array, here: Array, places: Indices, speeds: Indices, pivot_m: Array, turned_by: float
 ) -> Array:
     """What a prior takes for deviations from its reference, n.
 
@@ -73,14 +115,14 @@ def moved_from(
         here: x, n.
         places: which of the numbers are east and north of places, m × 2.
         speeds: which are those of velocities, k × 2.
-        base_m: east and north of the base, 2 (m).
+        pivot_m: what the map is turned about, east and north, 2 (m).
         turned_by: θ (rad).
     """
     moved, cosine, sine = here - reference, np.cos(turned_by), np.sin(turned_by)
     for i in range(len(places) + len(speeds)):
         place = i < len(places)
         e, n = places[i] if place else speeds[i - len(places)]
-        from_e, from_n = (base_m[0], base_m[1]) if place else (0.0, 0.0)
+        from_e, from_n = (pivot_m[0], pivot_m[1]) if place else (0.0, 0.0)
         was_e, was_n = reference[e] - from_e, reference[n] - from_n
         now_e, now_n = here[e] - from_e, here[n] - from_n
         moved[e] = cosine * now_e + sine * now_n - was_e - turned_by * was_n
@@ -111,23 +153,23 @@ def change_pairs(matrix: Array, vector: Array, pairs: Indices, changes: Array) -
         vector[e], vector[n] = one * ee + other * ne, one * en + other * nn
 
 
-def turned(left: Remainder, layout: Layout, was: Array, now: Array) -> Remainder:
+def turned(left: Remainder, layout: Layout, pivot_m: Array, was: Array, now: Array) -> Remainder:
     """A remainder with what it knows of standing nodes said where they are now.
 
-    Each deviation from x is taken for one from r in which the part along J x, a turn about the base, is one
+    Each deviation from x is taken for one from r in which the part along J x, a turn about the pivot, is one
     along J r: A = I + J (r − x) (J x)ᵀ / |x|².
 
     Args:
         left: of a keyframe and the border; the keyframe's derivatives were taken where it is.
         layout: of the window.
+        pivot_m: what the map is turned about, east and north, 2 (m).
         was: r, where the derivatives by the border were taken, flat.
         now: x, the estimate, flat.
     """
     size = layout.length * layout.width
     starts = np.array(list(layout.stands.values()), dtype=np.intp)
     at = starts[:, None] + np.arange(2)
-    base_m = np.array(layout.state.base_place()[:2])
-    off_m, place_m = was[size + at] - now[size + at], now[size + at] - base_m
+    off_m, place_m = was[size + at] - now[size + at], now[size + at] - pivot_m
     squared = (place_m**2).sum(axis=1) + UNIT_M**2
     near = (off_m**2).sum(axis=1) <= FAR**2 * squared
     if not (off_m[near] != 0.0).any():

@@ -14,6 +14,8 @@ VARIANCES = np.array([6, 6, 7, 8, 9, 10])
 """Which sums of a way are the variances of which states."""
 STATES, PLACES = 6, 3
 """Numbers of a state, and how many of them in front are its place."""
+HEADING = 3
+"""Which of a unit's state's numbers is the heading."""
 
 
 class Motion(NamedTuple):

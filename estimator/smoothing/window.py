@@ -116,7 +116,7 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         problem, solved, modes, state.exposed = judged
         trimmed = trim(problem, solved)
         left = solved.chain.remainder(layout.length - 1)
-        left = turned(left, layout, problem.first(solved.x), solved.x)
+        left = turned(left, layout, problem.pivot_m, problem.first(solved.x), solved.x)
         settle(state, layout, solved, left.matrix)
         for name, images in otherwise(layout, solved.x, modes).items():
             state.nodes[name] = replace(state.nodes[name], otherwise=images)

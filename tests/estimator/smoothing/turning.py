@@ -13,6 +13,7 @@ from estimator.smoothing.walks import STATES
 
 HEADING_SIGMA_RAD = 0.1
 BEACONS_M = {"b1": (5.0, 8.0), "b2": (-6.0, 12.0)}
+AFAR_M = (45.0, -30.0)
 
 
 def walk_past_beacons(base_m: tuple[float, float] = (0.0, 0.0), free: bool = False) -> list[AnyReading]:
@@ -55,6 +56,36 @@ def walk_past_beacons(base_m: tuple[float, float] = (0.0, 0.0), free: bool = Fal
             for name, place in places.items():
                 range_m = float(np.hypot(*(at - place)) + chance.normal(0.0, 0.1))
                 readings.append(Range(t=float(second), a=who, b=name, range_m=range_m, technology="uwb"))
+    return readings
+
+
+def walk_from_afar(until_s: float) -> list[AnyReading]:
+    """A unit walks round between two beacons; only where it was switched on is known, and there is no base.
+
+    Args:
+        until_s: how long (s).
+    """
+    chance, at = np.random.default_rng(2), np.array(AFAR_M)
+    places = {name: at + np.array([e, n]) for name, (e, n) in BEACONS_M.items()}
+    readings: list[AnyReading] = [
+        Node(
+            t=0.0,
+            node="ff1",
+            role="responder",
+            position_m=(*AFAR_M, 0.0),
+            sigma_m=0.05,
+            heading_sigma_rad=3.0 * HEADING_SIGMA_RAD,
+        )
+    ]
+    readings += [Node(t=0.0, node=name, role="beacon") for name in BEACONS_M]
+    for second in np.arange(1.0, until_s + 1.0).tolist():
+        step = np.array([np.cos(second / 7.0), np.sin(second / 7.0)])
+        at = at + step
+        e, n = (step + chance.normal(0.0, 0.03, 2)).tolist()
+        readings.append(Displacement(t=second, from_t=second - 1.0, node="ff1", delta_m=(e, n, 0.0)))
+        for name, place in places.items():
+            range_m = float(np.hypot(*(at - place)) + chance.normal(0.0, 0.1))
+            readings.append(Range(t=second, a="ff1", b=name, range_m=range_m, technology="uwb"))
     return readings
 
 
