@@ -29,7 +29,7 @@ SOON = 4
 """Iterations after which an image is given up that is hopeless."""
 FAR, HOPELESS = 600.0, 50.0
 """What an image costs more, in log likelihood, that is not solved at all, and that is given up."""
-SLACKS_M = (1.0, 0.3)
+SLACKS_M = (1.0, 0.3, 0.1)
 """How far off an estimate may be at first whose way nobody has gone: with a unit turned, or others along."""
 
 

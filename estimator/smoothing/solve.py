@@ -138,13 +138,14 @@ class Problem:
         return self.rows.jacobian(self.first(x))
 
     def weigh(self, residual: Array, slack_m: float = 0.0) -> Weighted:
-        """E-step of the readings' noise."""
-        outliers, shift, spread = self.rows.noise.T
-        predicted = np.full(len(residual), slack_m**2)
-        if slack_m > 0.0:
-            powers = self.rows.pairs[:, 1] == RSSI
-            predicted[: len(powers)][powers] = (SLACK_DB_PER_M * slack_m) ** 2
-        weighted = weigh(residual, self.rows.sigma, predicted, outliers, shift, spread)
+        """E-step of the readings' noise, as large as the estimate may be off.
+
+        Else readings a metre off pull with all their weight (graduated non-convexity, Blake, Zisserman).
+        """
+        slack = np.full(len(residual), slack_m)
+        slack[: len(self.rows.pairs)][self.rows.pairs[:, 1] == RSSI] *= SLACK_DB_PER_M
+        sigma = np.hypot(self.rows.sigma, slack)
+        weighted = weigh(residual, sigma, np.zeros(len(residual)), *self.rows.noise.T)
         weighted.information[self.left_out] = 0.0
         return weighted
 

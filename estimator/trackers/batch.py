@@ -42,7 +42,7 @@ from estimator.smoothing.tracks import tracks
 from estimator.smoothing.window import keep_up
 from estimator.trackers.base import TrackerSettings
 
-SLACKS_M = (3.0, 1.0, 0.3)
+SLACKS_M = (3.0, 1.0, 0.3, 0.1)
 LEARNING = (1.5, 1.0, 0.5)
 """How far the logarithms of noise variances may move, solution by solution."""
 LEARNING_RESTING = 1.0

@@ -1,16 +1,20 @@
 """Accuracy on public recordings, with one set of parameters and no truth in the readings."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from backend.bench.accuracy.cases import Case, case_of
 from backend.bench.accuracy.entrants import Mode, entrants
 from backend.bench.accuracy.judge import judge
 from backend.recordings.datasets import footimu_vicon
 from estimator.evaluate import Errors
+from estimator.measurements.range import Range
+from estimator.simulate import Report
 
 BOOTS = [f"footimu_vicon:{walk}" for walk in footimu_vicon.RECORDINGS]
 WALKS = ["uwb_outdoor_hanyang:LOS_A1", "uwb_outdoor_hanyang:NLOS_A1"]
@@ -32,10 +36,10 @@ def rmse_m(case: Case, entrant: str, mode: Mode) -> float:
 
 
 def test_plaza1_online_with_unknown_beacons_stays_within_a_metre(shared_data: Path) -> None:
-    """The goal for the aligned error, 0.30 m, is not reached: it is larger until the scale is known."""
+    """The goal for the aligned error, 0.30 m, is reached by little: it is larger until the scale is known."""
     found = errors_of(recording(shared_data, "plaza1"), "kirchhoff", "online")
     assert found.rmse_m <= 1.0
-    assert found.aligned_rmse_m <= 0.40
+    assert found.aligned_rmse_m <= 0.32
 
 
 def test_plaza1_smoothed_stays_within_90_cm_and_places_all_its_beacons(shared_data: Path) -> None:
@@ -45,7 +49,7 @@ def test_plaza1_smoothed_stays_within_90_cm_and_places_all_its_beacons(shared_da
     assert {name for name in tracks if name.startswith("beacon")} == {f"beacon-{n}" for n in (0, 1, 5, 6)}
     found = judge(tracks, case.truth, smoothed.heights).errors
     assert found.rmse_m <= 0.9
-    assert found.aligned_rmse_m <= 0.25
+    assert found.aligned_rmse_m <= 0.21
 
 
 @pytest.mark.parametrize("walk", WALKS)
@@ -53,6 +57,23 @@ def test_a_walker_without_pdr_is_followed_by_ranges_alone(shared_data: Path, wal
     """The recording's authors: 1.12 and 0.94 m with a Kalman filter on the same ranges and inertial data."""
     assert rmse_m(recording(shared_data, walk), "kirchhoff", "online") <= 0.8
     assert rmse_m(recording(shared_data, walk), "kirchhoff", "smoothed") <= 0.6
+
+
+def test_every_tenth_range_too_long_by_metres_does_not_lead_the_smoothed_view_astray(
+    shared_data: Path,
+) -> None:
+    """Beyond those that are too long in the recording: echoes of up to 10 m."""
+    case, chance = recording(shared_data, WALKS[1]), np.random.default_rng(0)
+    reports = tuple(_echoed(report, chance) for report in case.reports)
+    assert rmse_m(case._replace(reports=reports), "kirchhoff", "smoothed") <= 0.8
+
+
+def _echoed(report: Report, chance: np.random.Generator) -> Report:
+    """A report whose range, one time in ten, is that of an echo."""
+    if not isinstance(report.reading, Range) or chance.random() > 0.1:
+        return report
+    longer_m = float(chance.uniform(0.0, 10.0))
+    return replace(report, reading=structs.replace(report.reading, range_m=report.reading.range_m + longer_m))
 
 
 @pytest.mark.parametrize("walk", BOOTS)
