@@ -23,6 +23,8 @@ from estimator.smoothing.solved import Solved
 FIX = physics.NOISES.index(physics.FIX_NOISE)
 RADIOS = 2
 """Radios whose symmetries are asked about: those that tell most of where somebody is."""
+MAST_M = 0.5
+"""Two radios on one mast, one above the other, are on no line on whose sides somebody may be."""
 TURNS = 8
 LOOSE_M2 = 0.2
 """A unit's step of a larger variance was made in silence."""
@@ -241,11 +243,16 @@ def exposed(heard: Heard, now: float) -> bool:
 
 
 def radios_of(heard: Heard) -> list[Array]:
-    """Where those radios are that tell most of where somebody is (m)."""
+    """Where those radios are that tell most of where somebody is, each apart from the others (m)."""
     numbers, first, index = np.unique(heard.radio, return_index=True, return_inverse=True)
     told = np.bincount(index, heard.told, len(numbers))
-    most = np.argsort(-told, kind="stable")[:RADIOS]
-    return [heard.radio_m[first[k]] for k in most.tolist() if told[k] > 0.0]
+    found: list[Array] = []
+    for k in np.argsort(-told, kind="stable").tolist():
+        at_m = heard.radio_m[first[k]]
+        apart = all(np.hypot(*(at_m - other_m)) > MAST_M for other_m in found)
+        if told[k] > 0.0 and apart and len(found) < RADIOS:
+            found.append(at_m)
+    return found
 
 
 def _around(radio_m: Array, towards_rad: float) -> list[Image]:
