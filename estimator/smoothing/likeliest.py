@@ -14,7 +14,7 @@ from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
 from estimator.smoothing.along import Costed, company, costed
 from estimator.smoothing.earlier import CLEARER, ITERATIONS, LEAST, earlier
-from estimator.smoothing.flips import LIVE, Effort, Flip, exposed, flips, heard_by, loose_steps
+from estimator.smoothing.flips import LIVE, RECENT_S, Effort, Flip, exposed, flips, heard_by, loose_steps
 from estimator.smoothing.imaged import Loose, imaged, now_of
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.otherwise import Mode, same_now
@@ -58,8 +58,10 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
         effort: how much is asked.
     """
     problem, solved, before = earlier(problem, solved)
+    # Where nobody was known before, hardly anything tells yet.
+    new = any(_is_new(problem.layout, i) for i in range(len(problem.layout.walks)))
     for _ in range(effort.rounds):
-        modes, alike, entered = list(before), bool(before), solved
+        modes, alike, entered = list(before), new or bool(before), solved
         led = _loose(problem, solved)
         most = max(effort.tried * WAYS // max(len(led), WAYS), LEAST_TRIED)
         for i in led:
@@ -72,6 +74,13 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
         # What was told of the others was told beside somebody at a place where he is not.
     problem.rows.widen(solved.x, solved.linear.jacobian)
     return Judged(problem, solved, modes, alike)
+
+
+def _is_new(layout: Layout, index: int) -> bool:
+    """Whether somebody whom no unit leads has entered just now."""
+    walk = layout.walks[index]
+    entered_t = float(layout.times[walk.first, index])
+    return walk.begins and walk.way is None and float(layout.grid[-1]) - entered_t < RECENT_S
 
 
 def _loose(problem: Problem, solved: Solved) -> Loose:

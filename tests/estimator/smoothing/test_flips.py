@@ -10,7 +10,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.flips import LIVE, exposed, flips, heard_by, loose_steps
+from estimator.smoothing.flips import LIVE, exposed, flips, heard_by, loose_steps, radios_of
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
 from tests.estimator.smoothing.windows import fused, problem_of
@@ -63,6 +63,15 @@ def test_who_crosses_the_line_of_his_radios_may_have_turned_back(
     south = [flip for flip in found if np.hypot(*(flip.image.of(np.array([5.0, 7.0])) - [5.0, -7.0])) < 0.2]
     assert any(abs(problem.layout.grid[flip.since] - CROSSED_S) <= 1.0 for flip in south)
     assert exposed(heard, 40.0)
+
+
+def test_two_radios_on_one_mast_are_on_no_line() -> None:
+    """As on a vehicle: not they, but the next radio tells in which line he may be at his image."""
+    mast = {"a1": (0.0, 0.0), "a2": (0.0, 0.05), "a3": (20.0, 0.0)}
+    problem, solved = solved_of(crossing(mast))
+    heard = heard_by(problem, solved, problem.layout.walks[0])
+    assert sorted(at_m[0].round(1) for at_m in radios_of(heard)) == [0.0, 20.0]
+    assert len(radios_of(heard.some(heard.radio_m[:, 0] < 10.0))) == 1
 
 
 def test_who_hears_radios_about_him_cannot_turn_back_unseen() -> None:

@@ -101,6 +101,13 @@ def test_who_hears_radios_about_him_is_nowhere_else() -> None:
     assert not judged.exposed
 
 
+def test_of_whom_nobody_knew_before_it_is_asked_again_soon_where_he_is() -> None:
+    """Hardly anything tells yet; later he hears radios about him."""
+    entered, later = ([r for r in crossing(CORNERS) if r.t <= until_s] for until_s in (2.0, 40.0))
+    assert likeliest(*solved_of(entered)).exposed
+    assert not likeliest(*solved_of(later)).exposed
+
+
 def test_what_he_drops_where_nobody_can_tell_may_lie_on_either_side() -> None:
     found = every([*lingering(), Drop(t=120.5, node="b1", by="ff1")])["b1"]
     assert found.position_m is not None
