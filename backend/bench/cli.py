@@ -69,7 +69,9 @@ def bench_accuracy(
 def bench_speed(
     only: Annotated[
         list[str] | None,
-        typer.Option(help="same-graph, growth, size, real-time, or a case of same-graph; once for each."),
+        typer.Option(
+            help="same-graph, growth, size, real-time, smoothed, or a case of same-graph; once for each."
+        ),
     ] = None,
     data: Annotated[Path, typer.Option(help="Folder of the data sets' folders.")] = Path("../shared/data"),
 ) -> None:

@@ -3,13 +3,14 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from backend.bench.speed import growth, real_time, same_graph, size
+from backend.bench.speed import growth, real_time, same_graph, size, smoothed
 
 TABLES: dict[str, Callable[[Path], None]] = {
     "same-graph": same_graph.run,
     "growth": lambda _: growth.run(),
     "size": lambda _: size.run(),
     "real-time": lambda _: real_time.run(),
+    "smoothed": lambda _: smoothed.run(),
 }
 
 

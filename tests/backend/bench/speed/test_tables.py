@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from backend.bench.accuracy import cases
-from backend.bench.speed import growth, real_time, same_graph, size
+from backend.bench.speed import growth, real_time, same_graph, size, smoothed
 from backend.bench.speed.contestants import Isam, Ours
 from backend.bench.speed.growth import Span
 from backend.bench.speed.laps import Laps
@@ -48,6 +48,15 @@ def test_size_and_real_time_print_their_tables(capsys: pytest.CaptureFixture[str
     assert "iSAM2, skip 10 + covariances" in told
     assert "share of one core: 0." in told
     assert "bar: at most 0.5 of one core: " in told
+
+
+def test_the_smoothed_view_is_timed_by_the_clock(capsys: pytest.CaptureFixture[str]) -> None:
+    taken = smoothed.measure(Laps(1, 9), 20)
+    assert taken.readings == 1 + 9 + 1 + 20 * 7
+    assert len(taken.seconds) == smoothed.TIMES
+    assert taken.rmse_m < 3.0
+    smoothed.run(Laps(1, 9), duration_s=5)
+    assert "bar: within 5 s: met" in capsys.readouterr().out
 
 
 def test_growth_measures_the_stretches_asked_for() -> None:
