@@ -5,7 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion.rows import OUTLIERS, SHIFT, SIGMA, SPREAD, WIDTH, columns_of, linearise
+from estimator.fusion.arcs import alike, fallen_back, look_aside
+from estimator.fusion.ledger import RANGE
+from estimator.fusion.rows import KIND, OUTLIERS, SHIFT, SIGMA, SPREAD, WIDTH, columns_of, linearise
 from estimator.graph.dense import Array, Indices
 from estimator.graph.filter_kernels import scatter
 from estimator.graph.robust import mixture_cost, weigh
@@ -14,6 +16,8 @@ from estimator.graph.triangular import factorised, forward_all, solved
 BENT = 0.2
 """Curvature left alone: residuals that differ from their linear forecast by less, in standard deviations."""
 HALVINGS = 4
+SETTLED = 0.2
+"""Share of its variance by which a reading's noise changes at most where it is said to rest."""
 SOLVED, UNSOLVABLE, INDEFINITE = range(3)
 
 
@@ -58,11 +62,16 @@ def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: i
     columns, jacobian, residual = columns_of(table), np.empty((m, WIDTH)), np.empty(m)
     ahead, forecast = np.empty((m, WIDTH)), np.empty(m)
     factor, unscale, predicted, good = np.zeros((n, n)), np.empty(n), np.empty(m), np.empty(m)
+    arcs = np.zeros(m)
     if not factorised(prior, factor, unscale):
         return Found(INDEFINITE, matrix, x, residual, predicted, good, False)
     linearise(table, columns, x, jacobian, residual)
     variances(columns, jacobian, factor, unscale, predicted)
-    cost, doubted = misfit(table, residual, x - start, prior, pull), False
+    own = sigma**2
+    curved = widen(table, columns, jacobian, residual, factor, unscale, arcs)
+    if curved:
+        sigma[:] = np.sqrt(own + arcs)
+    cost, doubted = misfit(table, sigma, residual, x - start, prior, pull), False
     for _ in range(iterations):
         weighted = weigh(residual, sigma, predicted, outliers, shift, spread)
         good[:] = weighted.good
@@ -78,7 +87,7 @@ def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: i
             # The step is halved while it makes the fit clearly worse.
             x = before + step
             linearise(table, columns, x, ahead, residual)
-            reached = misfit(table, residual, x - start, prior, pull)
+            reached = misfit(table, sigma, residual, x - start, prior, pull)
             if reached <= cost + 1.0:
                 break
             step, doubted = 0.5 * step, True
@@ -86,14 +95,18 @@ def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: i
             x = before.copy()
             linearise(table, columns, x, ahead, residual)
             break
-        cost = reached
-        rests = True
+        cost, rests = reached, True
         for r in range(m):
             for i in range(WIDTH):
                 if columns[r, i] >= 0:
                     forecast[r] -= jacobian[r, i] * (x[columns[r, i]] - before[columns[r, i]])
             most = BENT * np.sqrt(sigma[r] ** 2 + predicted[r])
             rests = rests and abs(residual[r] - forecast[r]) < most
+        if curved:
+            widen(table, columns, ahead, residual, factor, unscale, arcs)
+            rests = rests and bool((np.abs(own + arcs - sigma**2) <= SETTLED * sigma**2).all())
+            sigma[:] = np.sqrt(own + arcs)
+            cost = misfit(table, sigma, residual, x - start, prior, pull)
         if rests:
             break
         jacobian[:] = ahead
@@ -138,8 +151,52 @@ def variances(columns: Indices, jacobian: Array, factor: Array, unscale: Array, 
 
 
 @njit(cache=True, error_model="numpy")
-def misfit(table: Array, residual: Array, moved: Array, prior: Array, pull: Array) -> float:
+def widen(
+    table: Array,
+    columns: Indices,
+    jacobian: Array,
+    residual: Array,
+    factor: Array,
+    unscale: Array,
+    arcs: Array,
+) -> bool:
+    """What lines of sight that may be turned add to the noise of ranges; see `arcs`.
+
+    Args:
+        table: of m readings, those of one kind one after the other.
+        columns: which numbers each depends on, m × 8.
+        jacobian: its derivatives by them, m × 8.
+        residual: z − h(x) of each, m.
+        factor: of L, as `factorised` leaves it.
+        unscale: the same.
+        arcs: takes the variances, m (m²); nil of what is no range, and of all where none is worth minding.
+
+    Returns:
+        Whether any is.
+    """
+    arcs[:] = 0.0
+    ranged = table[:, KIND] == RANGE
+    m = int(ranged.sum())
+    if m == 0:
+        return False
+    first = int(np.argmax(ranged))
+    own = slice(first, first + m)
+    aside, levers_m, turned = np.empty((m, WIDTH)), np.empty(m), np.empty(m)
+    look_aside(table[own], columns[own], jacobian[own], residual[own], aside, levers_m)
+    variances(columns[own], aside, factor, unscale, turned)
+    each, minded = levers_m**2 * fallen_back(turned), (BENT * table[own, SIGMA]) ** 2
+    if not (m * each > minded).any():
+        return False
+    each *= alike(table[own])
+    if not (each > minded).any():
+        return False
+    arcs[own] = each
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def misfit(table: Array, sigma: Array, residual: Array, moved: Array, prior: Array, pull: Array) -> float:
     """Negative log likelihood of the mixture noise and the prior, up to a constant."""
     total = 0.5 * np.dot(moved, np.dot(prior, moved)) - np.dot(pull, moved)
     noise = table[:, OUTLIERS], table[:, SHIFT], table[:, SPREAD]
-    return float(total + mixture_cost(residual, table[:, SIGMA], *noise).sum())
+    return float(total + mixture_cost(residual, sigma, *noise).sum())

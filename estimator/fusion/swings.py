@@ -8,6 +8,7 @@ Bar-Shalom et al. 2001, 10.3, but in closed form and for any angle).
 
 import numpy as np
 
+from estimator.fusion.arcs import fallen_back
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 
@@ -48,8 +49,8 @@ def arc_m2(one: Array, other: Array, variance: Array) -> Array:
     """What an arc's second moments are beyond those of its tangent, … × 2 × 2 (m²).
 
     With ψ ~ N(0, v) a place at the end of a lever l is off by l sin ψ aside and l (cos ψ − 1) along it:
-    E sin² = (1 − exp(−2v)) / 2, and E (1 − cos)² = 3/2 − 2 exp(−v/2) + exp(−2v) / 2. The lever is what the
-    place's covariance with the heading tells: Σ_pψ / v, a quarter turn on.
+    E sin² = (1 − exp(−2v)) / 2, and E (1 − cos)² is `arcs.fallen_back`. The lever is what the place's
+    covariance with the heading tells: Σ_pψ / v, a quarter turn on.
 
     Args:
         one: covariance of a place with the heading, … × 2 (m rad).
@@ -61,7 +62,7 @@ def arc_m2(one: Array, other: Array, variance: Array) -> Array:
     along = np.stack([aside[..., 1], -aside[..., 0]], axis=-1)
     other_along = np.stack([other_aside[..., 1], -other_aside[..., 0]], axis=-1)
     sine = 0.5 * -np.expm1(-2.0 * variance) - variance
-    cosine = 1.5 - 2.0 * np.exp(-0.5 * variance) + 0.5 * np.exp(-2.0 * variance)
+    cosine = np.asarray(fallen_back(variance))
     found = sine[..., None, None] * aside[..., :, None] * other_aside[..., None, :]
     found += cosine[..., None, None] * along[..., :, None] * other_along[..., None, :]
     return np.asarray(found)

@@ -1,12 +1,14 @@
 """The compiled robust step against the same written with whole arrays."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.fusion import physics
-from estimator.fusion.descent import BENT, HALVINGS, INDEFINITE, SOLVED, UNSOLVABLE, descend
+from estimator.fusion.descent import BENT, HALVINGS, INDEFINITE, SETTLED, SOLVED, UNSOLVABLE, descend
 from estimator.fusion.ledger import BEARING, RANGE, RSSI
 from estimator.fusion.rows import (
     A_E,
@@ -20,6 +22,7 @@ from estimator.fusion.rows import (
     SIGMA,
     SPREAD,
     VALUE,
+    B,
     Row,
     Single,
     columns_of,
@@ -101,7 +104,10 @@ def linearise_plainly(table: Array, columns: Indices, x: Array) -> tuple[Array, 
 def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, iterations: int) -> Array:
     """Gauss-Newton of `descend`, in dense matrices and without its short cuts."""
     columns = columns_of(table)
-    sigma, outliers, shift, spread = (table[:, c].copy() for c in (SIGMA, OUTLIERS, SHIFT, SPREAD))
+    own, outliers, shift, spread = (table[:, c].copy() for c in (SIGMA, OUTLIERS, SHIFT, SPREAD))
+    ranged = table[:, KIND] == RANGE
+    # Places of fixed ends are at random here: only ranges between both nodes share a line.
+    alike = np.where(ranged & (table[:, B] >= 0.0), (ranged & (table[:, B] >= 0.0)).sum(), 1)
 
     def dense(x: Array) -> tuple[Array, Array]:
         jacobian, residual = linearise_plainly(table, columns, x)
@@ -109,7 +115,21 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
         np.add.at(whole, (np.arange(len(table))[:, None], columns), jacobian)
         return whole, residual
 
-    def misfit(residual: Array, moved: Array) -> float:
+    def arcs(jacobian: Array, residual: Array, information: Array) -> Array:
+        lever = np.where(ranged, (table[:, VALUE] - residual) * (jacobian[:, :2] ** 2).sum(axis=1), 0.0)
+        # States at random make lengths below nil, too.
+        lever = np.maximum(lever, 0.0)
+        far = lever > 0.0
+        east, north = jacobian[far, 0] / lever[far], jacobian[far, 1] / lever[far]
+        aside = np.zeros((len(table), N))
+        aside[far, 0], aside[far, 1] = -north, east
+        both = table[far, B] >= 0.0
+        aside[far, 3], aside[far, 4] = both * north, both * -east
+        v = np.einsum("mi,ij,mj->m", aside, np.linalg.inv(information), aside)
+        found = alike * lever**2 * (1.5 - 2.0 * np.exp(-0.5 * v) + 0.5 * np.exp(-2.0 * v))
+        return found if (found > (BENT * own) ** 2).any() else np.zeros(len(table))
+
+    def misfit(sigma: Array, residual: Array, moved: Array) -> float:
         good, bad = sigma**2, sigma**2 + spread**2
         from_good = np.log1p(-outliers) - 0.5 * (np.log(good) + residual**2 / good)
         from_bad = np.log(outliers) - 0.5 * (np.log(bad) + (residual - shift) ** 2 / bad)
@@ -117,8 +137,10 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
 
     x, matrix = start, prior
     whole, residual = dense(x)
+    wider = arcs(linearise_plainly(table, columns, x)[0], residual, prior)
+    curved, sigma = wider.any(), np.sqrt(own**2 + wider)
     predicted = np.einsum("mi,ij,mj->m", whole, np.linalg.inv(prior), whole)
-    cost = misfit(residual, x - start)
+    cost = misfit(sigma, residual, x - start)
     for _ in range(iterations):
         weighted = weigh(residual, sigma, predicted, outliers, shift, spread)
         matrix = prior + whole.T @ (whole * weighted.information[:, None])
@@ -127,7 +149,7 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
         for _ in range(HALVINGS):
             x = before + step
             ahead, residual = dense(x)
-            reached = misfit(residual, x - start)
+            reached = misfit(sigma, residual, x - start)
             if reached <= cost + 1.0:
                 break
             step = 0.5 * step
@@ -135,7 +157,14 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
             return before
         cost = reached
         forecast = linear - whole @ (x - before)
-        if (np.abs(residual - forecast) < BENT * np.sqrt(sigma**2 + predicted)).all():
+        rests = (np.abs(residual - forecast) < BENT * np.sqrt(sigma**2 + predicted)).all()
+        if curved:
+            was = sigma**2
+            wider = arcs(linearise_plainly(table, columns, x)[0], residual, matrix)
+            sigma = np.sqrt(own**2 + wider)
+            rests = rests and (np.abs(sigma**2 - was) <= SETTLED * was).all()
+            cost = misfit(sigma, residual, x - start)
+        if rests:
             break
         whole = ahead
         predicted = np.einsum("mi,ij,mj->m", whole, np.linalg.inv(matrix), whole)
@@ -169,3 +198,21 @@ def test_nobody_is_surer_of_where_he_stays_by_a_fix_that_he_does_not_follow() ->
     assert np.linalg.norm(found.x - 4.0 * along) > 3.0
     assert along @ sure @ along > 0.9 * 0.5**2
     assert (found.good[:2] < 0.5).all()
+
+
+def test_a_range_does_not_tell_where_on_its_arc_somebody_is() -> None:
+    """He is known to centimetres along a line of sight from before, which was turned by a few degrees."""
+    far_m, aside_m = 70.0, 8.0
+    was = np.array([far_m, -3.0]) / math.hypot(far_m, 3.0)
+    across = np.array([-was[1], was[0]])
+    known = np.diag([0.0, 0.0, 1.0])
+    known[:2, :2] = np.outer(was, was) / 0.05**2 + np.outer(across, across) / aside_m**2
+    start = np.array([far_m, 0.0, 0.0])
+    table = table_from([Row(RANGE, 0, far_m + 0.1, 0.1, *physics.RANGE_NOISE, 0.1)])
+    found = descend(table, known, np.zeros(3), start, 6)
+    assert np.linalg.norm(found.x - start) < 1.0
+    assert np.sqrt(np.linalg.inv(found.matrix)[1, 1]) > 0.8 * aside_m
+    # Where another radio tells how far aside he is, both tell all that they know.
+    second = Row(RANGE, 0, 50.0, 0.1, *physics.RANGE_NOISE, 0.1, b_e=far_m, b_n=-50.0)
+    both = descend(table_from([*table.tolist(), second]), known, np.zeros(3), start, 6)
+    assert (np.sqrt(np.diag(np.linalg.inv(both.matrix)))[:2] < 0.15).all()
