@@ -8,7 +8,7 @@ import math
 from itertools import pairwise
 from pathlib import Path
 
-from backend.recordings.datasets.base import KNOWN_SIGMA_M, NotTheDataSet, Vector3, numbers, samples
+from backend.recordings.datasets.base import KNOWN_SIGMA_M, NotTheDataSet, numbers, samples
 from estimator.measurements import AnyReading, Node, Position
 
 NAME = "footimu_gcp"
@@ -36,8 +36,10 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
     """
     del recording
     table = numbers(folder / f"{TRIAL}.csv")
-    stood_t, east, north = tiles(folder)[GIVEN]
-    fix = Position(t=stood_t, node=BOOT, position_m=(east, north, 0.0), sigma_m=(KNOWN_SIGMA_M,) * 3)
+    since_t, until_t, east, north = tiles(folder)[GIVEN]
+    fix = Position(
+        t=0.5 * (since_t + until_t), node=BOOT, position_m=(east, north, 0.0), sigma_m=(KNOWN_SIGMA_M,) * 3
+    )
     begins = Node(
         t=table[0]["t_s"],
         node=BOOT,
@@ -53,8 +55,8 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
     return [begins, fix, *samples(BOOT, RATE_HZ, [row["t_s"] for row in table], forces, rates, fields)]
 
 
-def tiles(folder: Path) -> list[Vector3]:
-    """Each tile that the boot stood on: in the middle of which time (s), east and north (m).
+def tiles(folder: Path) -> list[tuple[float, float, float, float]]:
+    """Each tile that the boot stood on: since when and until when (s), east and north (m).
 
     Raises:
         NotTheDataSet: a file is missing, or it stood as often as no tiles are given for.
@@ -63,11 +65,11 @@ def tiles(folder: Path) -> list[Vector3]:
     stood = _standstills(numbers(folder / f"{TRIAL}.csv"))
     if len(stood) != len(places):
         raise NotTheDataSet(f"{folder}: the boot stood {len(stood)} times, and {len(places)} tiles are given")
-    return [(t, *place) for t, place in zip(stood, places, strict=True)]
+    return [(*between, *place) for between, place in zip(stood, places, strict=True)]
 
 
-def _standstills(table: list[dict[str, float]]) -> list[float]:
-    """The middle of each time that a boot stood (s)."""
+def _standstills(table: list[dict[str, float]]) -> list[tuple[float, float]]:
+    """Since when and until when a boot stood each time (s)."""
     swings = [row["t_s"] for row in table if math.hypot(row["gx"], row["gy"], row["gz"]) > STANDING_RADPS]
     edges = [table[0]["t_s"], *swings, table[-1]["t_s"]]
-    return [0.5 * (one + other) for one, other in pairwise(edges) if other - one > STANDING_S]
+    return [(one, other) for one, other in pairwise(edges) if other - one > STANDING_S]

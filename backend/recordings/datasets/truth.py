@@ -74,8 +74,10 @@ def _vicon(folder: Path, recording: str) -> dict[str, Truth]:
 
 
 def _gcp(folder: Path, recording: str) -> dict[str, Truth]:
+    """A boot that stands on a tile does not go on; between two it swings in less time than it stands."""
     del recording
-    return {"boot": _truth([(t, x, y, 0.0) for t, x, y in footimu_gcp.tiles(folder)])}
+    stood = footimu_gcp.tiles(folder)
+    return {"boot": _truth([(t, x, y, 0.0) for since_t, until_t, x, y in stood for t in (since_t, until_t)])}
 
 
 def _truth(table: list[tuple[float, float, float, float]]) -> Truth:
