@@ -8,6 +8,7 @@ from estimator.fusion.introduce import place
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.rows import Single
 from estimator.fusion.state import FusionState
+from estimator.fusion.swings import unbend
 from estimator.fusion.way import offset_of, turned_m
 from estimator.graph.robust import Mixture
 from estimator.measurements.altitude import Altitude, Pressure, height_above
@@ -34,6 +35,9 @@ def fix(state: FusionState, reading: Position) -> list[Single]:
         return []
     state.count("fused")
     singles, offset = [], offset_of(state, node, reading.t)
+    if node.turned:
+        # A fix on the arc would seem to be far off its tangent.
+        unbend(state, node)
     for i in range(3):
         spread = max(sigma[i], physics.SIGMA_FLOOR_M)
         _enter_single(state, node, reading.t, i, position[i], spread, physics.FIX_NOISE)

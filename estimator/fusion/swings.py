@@ -9,9 +9,11 @@ Bar-Shalom et al. 2001, 10.3, but in closed form and for any angle).
 import numpy as np
 
 from estimator.fusion.arcs import fallen_back
+from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 
+LEAST_M2 = 1e-6
 LOOSE_RAD = 0.1
 """What a heading that is better known does beyond the first order is less than a hundredth of the way."""
 
@@ -43,6 +45,22 @@ def swung_m2(across: Array, variance: Array) -> Array:
     most = np.argmax(moved, axis=1)
     own = np.take_along_axis(across, most[:, None, None], axis=2)[:, :, 0]
     return arc_m2(own, own, variance[most])
+
+
+def unbend(state: FusionState, node: NodeState) -> None:
+    """Let a place be anywhere about the tangent along which its heading moves it, as far off as its arc is.
+
+    Args:
+        state: the fusion: its graph is changed.
+        node: a node with a unit.
+    """
+    graph = state.graph
+    covariance, row, at = graph.covariance(), graph.starts[node.unit], graph.starts[node.position]
+    variance = covariance[row : row + 1, row]
+    lever_m = float(np.hypot(*covariance[at : at + 2, row])) / float(variance[0])
+    beside_m2 = lever_m**2 * float(fallen_back(variance)[0]) + LEAST_M2
+    rows, noise = at + np.arange(2)[None, :], np.eye(2)[None] * beside_m2
+    graph.advance(rows, graph.reference[rows], np.eye(2)[None], noise)
 
 
 def arc_m2(one: Array, other: Array, variance: Array) -> Array:

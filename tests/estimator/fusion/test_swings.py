@@ -111,6 +111,18 @@ def test_a_fix_held_late_of_whose_heading_is_unknown_is_worth_what_he_has_walked
     assert outside(*seen(tracker.estimates()[0]), (0.0, WAY_M)) < INSIDE
 
 
+@pytest.mark.parametrize("turned_rad", [0.0, 1.0, 2.0, -2.5])
+def test_a_fix_shows_who_may_have_gone_anywhere_where_he_is_at_once(turned_rad: float) -> None:
+    """Before all turns have been tried: the fix lies on his arc, far off its tangent."""
+    there = 17.0 * math.cos(turned_rad), 17.0 * math.sin(turned_rad), 0.0
+    fix = Position(t=17.0, node="ff1", position_m=there, sigma_m=(0.1, 0.1, 0.1))
+    tracker = KirchhoffTracker()
+    tracker.fold([r for r in ahead(math.pi, (fix,)) if r.t <= 17.0])
+    (estimate,) = tracker.estimates()
+    assert estimate.position_m is not None
+    assert math.dist(estimate.position_m, there) < 0.5
+
+
 def test_two_who_follow_one_heading_know_where_they_are_to_each_other() -> None:
     tracker = KirchhoffTracker()
     tracker.fold(ahead(math.pi, (Drop(t=WAY_M, node="b1", by="ff1"),)))
