@@ -123,7 +123,7 @@ def attach_unit(state: FusionState, node: NodeState, unit_heading_rad: float | N
     if boot is not None:
         # Its frame is known: it is that in which it was told to begin.
         turn = within_pi((boot.began_rad if node.heading_rad is None else node.heading_rad) - boot.began_rad)
-    sigma = (turn_sigma(node), state.bias_sigma_radps(node), physics.SCALE_SIGMA)
+    sigma = (turn_sigma(node), state.bias_sigma_radps(node), state.scale_sigma(node))
     state.graph.add_node(node.unit, (turn, 0.0, 0.0), sigma)
     uav = float(node.role == "uav")
     nothing = (0.0,) * 6

@@ -37,6 +37,9 @@ of a cheap one once warm. How far those of a crew differ is anything up to that 
 BIAS_WALK_RADPS_PER_ROOT_S = radians(0.001)
 SCALE_SIGMA = 0.02
 SCALE_WALK_PER_ROOT_S = 1e-5
+STRAPDOWN_SCALE_SIGMA = 0.01
+"""Of displacements that raw samples make: they are off by what accelerometers are, 1 % (data sheets of
+LSM6DSO, BMI270). ZUPT-aided units err by 0.3 to 1 % of the way in all (Foxlin 2005; Nilsson 2013)."""
 SLIP_M = 0.5
 """A stumble, a wheel that spins, a standstill that is missed: half a metre along each horizontal axis."""
 SLIP_RARE = 5.0

@@ -15,6 +15,7 @@ from estimator.fusion.prior import Prior
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.inertial.navigation import Navigation
+from estimator.inertial.resting import RESTED_RADPS
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Role
 
@@ -140,8 +141,17 @@ class FusionState:
         return (0.0, 0.0, 0.0) if base is None or base.place_m is None else base.place_m
 
     def bias_sigma_radps(self, node: NodeState) -> float:
-        """Standard deviation of the prior of the gyro bias of a node's unit (rad/s)."""
+        """Standard deviation of the prior of the gyro bias of a node's unit (rad/s).
+
+        Where raw samples are navigated, a rest has told it, or displacements say what it is less sure by.
+        """
+        if node.node in self.navigations:
+            return RESTED_RADPS
         return bias_sigma_radps(node.bias_told, [other.bias_told for other in self.nodes.values()])
+
+    def scale_sigma(self, node: NodeState) -> float:
+        """Standard deviation of the prior of the scale of a node's unit."""
+        return physics.STRAPDOWN_SCALE_SIGMA if node.node in self.navigations else physics.SCALE_SIGMA
 
     def outliers(self, technology: str) -> float:
         """Share of a ranging technology's readings that are outliers, as far as it is known."""

@@ -13,6 +13,7 @@ from estimator.fusion.silence import LONGEST_S
 from estimator.fusion.standing import stand_on
 from estimator.fusion.way import Mark
 from estimator.inertial.navigation import Led
+from estimator.inertial.strapdown import RATE_WALK
 from estimator.measurements.displacement import Displacement
 
 TRAIL_S = 4.0
@@ -22,6 +23,7 @@ FLOOR_M2 = physics.DISPLACEMENT_FLOOR_M**2
 TURN_RAD2_PER_M = physics.HEADING_WALK_RAD_PER_ROOT_M**2
 TURN_RAD2_PER_S = physics.GYRO_WALK_RAD_PER_ROOT_S**2
 BIAS_PER_S, SCALE_PER_S = physics.BIAS_WALK_RADPS_PER_ROOT_S**2, physics.SCALE_WALK_PER_ROOT_S**2
+WARMING_PER_S = RATE_WALK**2
 Noise = tuple[float, float, float, float, float, float]
 """Variances of east, north, up (m²), ψ (rad²), β (rad²/s²) and s."""
 NOTHING = (0.0,) * 6
@@ -90,14 +92,13 @@ class Step:
             across, up = across + length**2, up + length**2
         still = own > 0.0 and length < physics.STILL_MPS * own and start <= pose_t
         turn = self._stand(reading, still)
-        up += (physics.SCALE_SIGMA * u) ** 2
         if isinstance(reading, Led):
-            up += reading.up_m2
+            up += reading.up_m2 + (physics.STRAPDOWN_SCALE_SIGMA * u) ** 2
             if reading.rested_radps > 0.0:
                 turn = Single(self.node.unit, 1, 0.0, reading.rested_radps, physics.TURN_NOISE)
-        noise = walk_noise((across, across, up), reading.sigma_m, length, duration)
-        if isinstance(reading, Led):
-            noise = sum_of(noise, (0.0, 0.0, 0.0, 0.0, reading.bias_rad2ps2, 0.0))
+        else:
+            up += (physics.SCALE_SIGMA * u) ** 2
+        noise = walk_noise((across, across, up), reading, length, duration)
         if own > 0.0:
             self._speed_mps = math.hypot(e, n) / own
         self._pose_t = self._unit_t = t
@@ -144,20 +145,23 @@ class Step:
         )
 
 
-def walk_noise(known: Vector3, sigma_m: float | None, length: float, duration: float) -> Noise:
+def walk_noise(known: Vector3, reading: Displacement, length: float, duration: float) -> Noise:
     """Variances of a displacement.
 
     Args:
         known: what else its place is unsure by: of east, north, up (m²).
-        sigma_m: standard deviation that its unit tells, if it does (m).
-        length: of it (m).
-        duration: of it (s).
+        reading: the displacement; one that samples have made knows its own noise.
+        length: of what counts of it (m).
+        duration: the same (s).
     """
     e, n, u = known
-    step = WALK_M2_PER_M * length if sigma_m is None else sigma_m**2
+    step = WALK_M2_PER_M * length if reading.sigma_m is None else reading.sigma_m**2
     position = step + STAND_M2_PER_S * duration + FLOOR_M2
-    heading = TURN_RAD2_PER_M * length + TURN_RAD2_PER_S * duration
-    return e + position, n + position, u + position, heading, BIAS_PER_S * duration, SCALE_PER_S * duration
+    if isinstance(reading, Led):
+        heading, bias = reading.turned_rad2, WARMING_PER_S * duration + reading.bias_rad2ps2
+    else:
+        heading, bias = TURN_RAD2_PER_M * length + TURN_RAD2_PER_S * duration, BIAS_PER_S * duration
+    return e + position, n + position, u + position, heading, bias, SCALE_PER_S * duration
 
 
 def start_of(reading: Displacement, pose_t: float | None) -> float:

@@ -8,13 +8,14 @@ from estimator.graph.dense import Array
 from estimator.inertial.stance import BEFORE
 
 GRAVITY_MPS2 = 9.80665
-TOLD = 9
-"""Numbers gathered while a boot is levelled: samples, forces 3, rates 3, their squares, seconds."""
+TOLD = 12
+"""Numbers gathered while a boot is levelled: samples, forces 3, rates 3, their squares, seconds, and those of
+the rates' second half less those of its first, 3."""
 ERRORS = 18
 """Place, velocity, attitude, biases and scales of accelerometers, biases of gyros (3 each)."""
 VELOCITY, ATTITUDE, FORCE, SCALE, RATE = 3, 6, 9, 12, 15
 """Where each begins among the errors."""
-GRAVITY, HEADING, AXIS, AZIMUTH = range(4)
+GRAVITY, HEADING, AXIS, AZIMUTH, TURNED_RAD, FARTHEST_RAD, TURNED_RAD2 = range(7)
 """What `known` holds."""
 HELD_S, STOOD, FOOTHOLD_M, FLAT_M, FLAT_M2 = range(5)
 """What `footing` holds."""
@@ -59,7 +60,9 @@ class Boot(NamedTuple):
         felt: what the last samples were like, see `stance.felt_by`.
         told: what is gathered while it is levelled, see `TOLD`; its first number is −1 afterwards.
         known: gravity as the unit feels it (m/s²); what its x axis faced when it last stood (rad); which of
-            its axes tells that, the most level one; and that one's direction less the x axis' (rad): 4.
+            its axes tells that, the most level one; and that one's direction less the x axis' (rad). By how
+            much it has turned since it began, to the left, whole turns included (rad); the most that this has
+            been to either side (rad); and what that adds to the variance of its heading (rad²): 7.
         footing: how long ago a standstill last held it (s); how many standstills in a row have held it; how
             high its last foothold was (m); how far it would have risen were floors not flat (m); and what
             that adds to the variance of its height (m²): 5.
@@ -71,8 +74,9 @@ class Boot(NamedTuple):
             changed from one sample to the next, squared (m²/s⁴): 16.
         unheld: velocity (m/s) and way (m) that it seems to have while it stands, 6: that may move, too.
         gyros: what they have reported in this rest, summed up: rates 3, their squares, seconds; how well
-            their biases are known (rad/s); what the bias of its heading is less sure by than any unit's
-            ((rad/s)²); and how long ago a rest has told it, if that is still to be said (s): 8.
+            their biases are known (rad/s); what the bias of its heading is less sure by than of one that has
+            rested at first ((rad/s)²); and how long ago a rest has told it, if that is still to be said
+            (s): 8.
     """
 
     held: Strapdown
@@ -93,7 +97,7 @@ class Boot(NamedTuple):
             Strapdown.new(),
             BEFORE.copy(),
             np.zeros(TOLD),
-            np.array([GRAVITY_MPS2, heading_rad, 0.0, 0.0]),
+            np.array([GRAVITY_MPS2, heading_rad, 0.0, 0.0, 0.0, 0.0, 0.0]),
             np.zeros(5),
             np.zeros(16),
             np.zeros(6),
@@ -103,7 +107,7 @@ class Boot(NamedTuple):
     def anew(self) -> Self:
         """One that is to be levelled again, and faces what this one faced when it last stood."""
         again = self.new(self.heading_rad)
-        again.known[AXIS], again.known[AZIMUTH] = self.known[AXIS], self.known[AZIMUTH]
+        again.known[AXIS:] = self.known[AXIS:]
         again.footing[FLAT_M] = self.footing[FLAT_M]
         again.held.sensors[:] = self.held.sensors
         again.known[GRAVITY] = self.known[GRAVITY]

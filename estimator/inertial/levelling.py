@@ -16,26 +16,32 @@ from estimator.inertial.boot import (
     GRAVITY_MPS2,
     HEADING,
     RATE,
+    RESTED_S,
     SCALE,
     VELOCITY,
     Boot,
     Strapdown,
 )
-from estimator.inertial.resting import GRANTED_RADPS, RESTED_RADPS, UNRESTED_RADPS
+from estimator.inertial.resting import ANEW_RAD2PS2, KNOWN_RADPS, RESTED_RADPS, UNRESTED_RADPS, believed
 from estimator.inertial.rotations import azimuth_rad, level
 from estimator.inertial.strapdown import FORCE_SIGMA_MPS2, SCALE_SIGMA, mend
 
-GRAVITY_OFF_MPS2 = 0.3
-"""The Earth's gravity differs by 0.03 m/s² from place to place, a unit's scale by a few per cent of it."""
+GRAVITY_OFF_MPS2 = 0.6
+"""What a unit at rest may feel more or less of gravity: small accelerometers are off by 0.2 to 0.4 m/s² (20
+to 40 mg) and by 1 to 3 % (data sheets of BMI270, LSM6DSO, ICM-42688)."""
 FELT_MPS2 = 4.0
 """A unit that feels so much more or less for half a second falls, is dead, or measures in other units."""
 ALIGN_S = 0.5
 """So long is looked for what is up, and for what gyros at rest tell."""
 RESTING_RADPS, BIASED_RADPS = 0.05, 0.1
 """A boot that rests trembles by so much at most; a gyro's bias is less than this, 6 degrees a second."""
-TILT_SIGMA_RAD = (0.02, 0.2)
+UNSETTLED = 0.1
+"""What is less than this of what a bias is unsure by anyway is nothing."""
+TILT_SIGMA_RAD = (0.02, 0.4)
 """Of a boot that rests while it is levelled, and of one that does not."""
-START_SIGMA_MPS = (0.02, 1.0)
+START_SIGMA_MPS = (0.02, 2.0)
+"""How fast it may be, or have been while it was levelled: a boot goes a stride in half a second, of 1.3 m
+where its wearer walks and of two and more where he runs."""
 SWING_SIGMA_MPS = (0.02, 3.0)
 """The same of what is not held by standstills: a boot may be swung when it begins."""
 LEVEL_SIGMA_RAD = (0.003, 0.5)
@@ -61,6 +67,7 @@ def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
         told[1 + c] += force[c]
         told[4 + c] += rate[c]
         told[7] += rate[c] * rate[c]
+        told[9 + c] += rate[c] if told[8] > 0.5 * ALIGN_S + 0.5 * step_s else -rate[c]
     if told[8] < ALIGN_S - 0.5 * step_s:
         return
     mean = told[1:4] / told[0]
@@ -78,12 +85,19 @@ def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
     )
     held, free = boot.held, boot.free
     if rests:
-        held.sensors[6:] = turning
         boot.known[GRAVITY] = pull
-        boot.gyros[BIAS_RADPS] = RESTED_RADPS
+    if rests and (boot.gyros[BIAS_RADPS] == 0.0 or boot.gyros[BIAS_RADPS] > KNOWN_RADPS):
+        # What rests in its first quarter of a second and not in its second one has begun to move.
+        unsettled = told[9:12] / told[0]
+        share, more2 = believed(turning, np.dot(unsettled, unsettled))
+        held.sensors[6:] = share * turning
+        boot.gyros[CHANGED] = more2 if more2 > (UNSETTLED * RESTED_RADPS) ** 2 else 0.0
+        if boot.gyros[BIAS_RADPS] > 0.0:
+            boot.gyros[CHANGED], boot.gyros[RESTED_S] = ANEW_RAD2PS2, step_s
+        boot.gyros[BIAS_RADPS] = np.sqrt(RESTED_RADPS**2 + more2)
     elif boot.gyros[BIAS_RADPS] == 0.0:
         boot.gyros[BIAS_RADPS] = UNRESTED_RADPS
-        boot.gyros[CHANGED] = UNRESTED_RADPS**2 - GRANTED_RADPS**2
+        boot.gyros[CHANGED] = UNRESTED_RADPS**2 - RESTED_RADPS**2
     held.attitude[:] = level(mean, int(boot.known[AXIS]), boot.known[HEADING] + boot.known[AZIMUTH])
     for axis in range(2):
         if abs(held.attitude[2, axis]) <= abs(held.attitude[2, 1 - axis]):

@@ -17,12 +17,16 @@ from estimator.inertial.boot import (
     GRAVITY_MPS2,
     MOVED_M2,
     RESTED_S,
+    TURNED_RAD2,
     VELOCITY,
     Boot,
 )
+from estimator.inertial.holding import UNHELD_S
+from estimator.inertial.levelling import ALIGN_S
 from estimator.inertial.loose import tell
 from estimator.inertial.resting import TOLD_AFTER_S
 from estimator.inertial.samples import Samples
+from estimator.inertial.strapdown import ATTITUDE_WALK, FORCE_SIGMA_MPS2, SCALE_SIGMA
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.imu import RATE_MIN_HZ
 
@@ -43,6 +47,8 @@ BRIDGED_OFF, FASTER_OFF = 0.3, 0.5
 STRIDE_SIGMA_M_PER_ROOT_M = 0.02
 """Random error of a stride, more than the filter itself believes, which takes each standstill for perfect:
 published errors of ZUPT-aided units are 0.3 to 1 % of ways of some ten strides, heights as much."""
+FELT_OFF_MPS2 = math.hypot(FORCE_SIGMA_MPS2, SCALE_SIGMA * GRAVITY_MPS2)
+"""What its accelerometers may be off by, and no motion."""
 FASTEST_MPS = 25.0
 """A runner's boot swings twice as fast as he runs."""
 TURNS_RADPS, TURNED_RAD, TURNED_RADPS, ANYWHERE_RAD = 3.0, 1.0, 0.1, 1.8
@@ -55,12 +61,14 @@ class Led(Displacement, tag="led", frozen=True):
 
     Attributes:
         up_m2: variance of its height beside `sigma_m`, as floors may not be flat (m²).
-        bias_rad2ps2: variance that the bias of its heading takes: it has begun without a rest, or a rest has
-            told that it was another one ((rad/s)²).
+        turned_rad2: variance that its heading gains, beside what the bias does to it (rad²).
+        bias_rad2ps2: variance that the bias of its heading takes: it has begun without a good rest, or a
+            rest has told that it was another one ((rad/s)²).
         rested_radps: a rest has, some seconds ago: it is nil now but for so much (rad/s); nil: none has.
     """
 
     up_m2: float = 0.0
+    turned_rad2: float = 0.0
     bias_rad2ps2: float = 0.0
     rested_radps: float = 0.0
 
@@ -182,12 +190,16 @@ def _led(
     while done < len(force):
         # Up to where the next displacement is told, by the boot's own clock.
         upto = min(max(round((told_t + EACH_S - known.t) / step_s), done + 1), len(force))
-        navigates = boot.levelled
+        navigates, known_before = boot.levelled, boot.gyros[BIAS_RADPS] > 0.0
         done += advance(boot, force[done:upto], rate[done:upto], step_s)
         t = known.t + done * step_s
         if not navigates:
             if not boot.levelled and t > told_t + EACH_S + JITTER_MOST_S:
                 text = "its samples feel no gravity: the unit is dead, or measures in other units"
+            if boot.levelled and not known_before:
+                # It stood meanwhile, or may have been swung anywhere.
+                found.append(_displacement(boot, node, max(told_t, t - ALIGN_S), t, 0.0))
+                boot.gyros[CHANGED] = boot.known[TURNED_RAD2] = 0.0
             told_t = t if boot.levelled else told_t
         elif t >= told_t + EACH_S - 0.5 * step_s:
             tell(boot, t - told_t)
@@ -201,7 +213,7 @@ def _led(
             boot.footing[FOOTHOLD_M] -= boot.held.place[2]
             boot.held.place[:] = boot.unheld[3:] = 0.0
             boot.footing[FLAT_M2] = 0.0
-            boot.loose[MOVED_M2 : MOVED_M2 + 2] = boot.gyros[CHANGED] = 0.0
+            boot.loose[MOVED_M2 : MOVED_M2 + 2] = boot.gyros[CHANGED] = boot.known[TURNED_RAD2] = 0.0
             if boot.gyros[RESTED_S] > TOLD_AFTER_S:
                 boot.gyros[RESTED_S] = 0.0
     end_t = known.t + len(force) * step_s
@@ -220,8 +232,9 @@ def _displacement(boot: Boot, node: str, from_t: float, t: float, unsure_m2: flo
     speed_m2 = max(float(held.covariance[velocities, velocities].max()), 0.0) * (t - from_t) ** 2
     way_m2 = STRIDE_SIGMA_M_PER_ROOT_M**2 * float(np.sqrt(np.dot(held.place, held.place)))
     moved_m2, lifted_m2 = boot.loose[MOVED_M2 : MOVED_M2 + 2].tolist()
-    # What it stands on may have moved: then it went so far at least.
-    moved_m2 = max(moved_m2, float(np.dot(boot.unheld[3:], boot.unheld[3:])))
+    # What it stands on may have moved: then it went so far at least, but for what its sensors feel at rest.
+    felt_m2 = (FELT_OFF_MPS2 * UNHELD_S * (t - from_t)) ** 2
+    moved_m2 = max(moved_m2, float(np.dot(boot.unheld[3:], boot.unheld[3:])) - felt_m2)
     return Led(
         t=t,
         node=node,
@@ -230,6 +243,7 @@ def _displacement(boot: Boot, node: str, from_t: float, t: float, unsure_m2: flo
         heading_rad=boot.heading_rad,
         sigma_m=math.sqrt(way_m2 + speed_m2 + moved_m2 + unsure_m2) + 1e-6,
         up_m2=float(boot.footing[FLAT_M2]) + max(lifted_m2 - moved_m2, 0.0),
+        turned_rad2=ATTITUDE_WALK**2 * (t - from_t) + float(boot.known[TURNED_RAD2]),
         bias_rad2ps2=float(boot.gyros[CHANGED]),
         rested_radps=float(boot.gyros[BIAS_RADPS]) if boot.gyros[RESTED_S] > TOLD_AFTER_S else 0.0,
     )

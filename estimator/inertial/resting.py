@@ -14,8 +14,12 @@ TURNING_RADPS = 0.1
 """Who turns so fast does not rest: no gyro is off by 6 degrees a second."""
 TREMBLES = 0.3
 """What is left of a tremble in its mean over a second, as a share."""
-RESTED_RADPS, UNRESTED_RADPS = 2e-3, 0.03
-"""How well a bias is known where the first half second was a rest, and before any rest."""
+RESTED_RADPS, UNRESTED_RADPS = 1e-3, 0.05
+"""How well a bias is known where the first half second was a rest, for half a milliradian is no turn; and
+before any rest: small gyros are off by 1 to 3 degrees a second (data sheets of LSM6DSO, BMI160)."""
+SPREADS_RADPS2 = np.geomspace(1e-3, UNRESTED_RADPS, 6) ** 2
+"""Gyros of one make are off by a milliradian a second, of another by fifty (data sheets of 3DM-GX5, BMI160):
+nobody knows which a unit has, so each is as likely."""
 SETTLES_RADPS = 0.01
 """A boot that seems to rest settles by a degree in two seconds."""
 ANEW_RAD2PS2 = 0.1**2
@@ -23,8 +27,8 @@ ANEW_RAD2PS2 = 0.1**2
 TOLD_AFTER_S = 4.5
 """A bias counts from one keyframe to the next, which are two seconds apart: the new one is told when it has
 begun for certain."""
-GRANTED_RADPS = 5e-3
-"""What any PDR unit's gyro is off by: who fuses its displacements reckons with that."""
+KNOWN_RADPS = 5e-3
+"""Of a bias that is known so well, a slow turn is more likely than another one."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -52,9 +56,33 @@ def rest(boot: Boot, rate: Array, step_s: float) -> None:
     mean = gyros[RATES : RATES + 3] / gyros[SECONDS]
     tremble = max(gyros[SQUARES] / gyros[SECONDS] - np.dot(mean, mean), 0.0)
     gyros[:BIAS_RADPS] = 0.0
-    # Once it is known, a slow turn is more likely than another bias.
-    if gyros[BIAS_RADPS] > GRANTED_RADPS and np.dot(mean, mean) < TURNING_RADPS**2:
+    if gyros[BIAS_RADPS] > KNOWN_RADPS and np.dot(mean, mean) < TURNING_RADPS**2:
         _take(boot, mean, np.sqrt(SETTLES_RADPS**2 + TREMBLES**2 * tremble), step_s)
+
+
+@njit(cache=True, error_model="numpy")
+def believed(turning: Array, told2: float) -> tuple[float, float]:
+    """What of the rates in a first rest is bias: a good unit's is small, and what is more has been a tremble.
+
+    Args:
+        turning: mean rates, 3 (rad/s).
+        told2: how far from the biases they may be along each axis, squared ((rad/s)²).
+
+    Returns:
+        The share of them that is bias, and the variance of what is left of each ((rad/s)²).
+    """
+    squared = np.dot(turning, turning)
+    total = mean = square = left = 0.0
+    for spread in SPREADS_RADPS2:
+        variance = spread + told2
+        weight = np.exp(-0.5 * squared / variance) * (SPREADS_RADPS2[0] / variance) ** 1.5
+        share = spread / variance
+        total += weight
+        mean += weight * share
+        square += weight * share**2
+        left += weight * share * told2
+    mean, square, left = mean / total, square / total, left / total
+    return mean, left + max(square - mean**2, 0.0) * squared
 
 
 @njit(cache=True, error_model="numpy")

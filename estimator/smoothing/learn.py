@@ -155,6 +155,8 @@ def calibrate(state: FusionState, problem: Problem, x: Array, border: Array) -> 
 def learn_biases(state: FusionState, problem: Problem, x: Array, found: Array) -> None:
     """Note what the window says of each gyro's bias, as long as its prior is the window's own.
 
+    Of one that navigates raw samples a rest has told already what a crew's others would tell.
+
     Args:
         state: its nodes take it.
         problem: of the window.
@@ -168,6 +170,8 @@ def learn_biases(state: FusionState, problem: Problem, x: Array, found: Array) -
         if walk.way is None or ("walk", walk.number) in known:
             continue
         node = state.nodes[walk.node.node]
+        if node.node in state.navigations:
+            continue
         at = walk.first * layout.width + STATES * i + BIAS
         variance = float(found[walk.first, i, BIAS, BIAS])
         told[node.node] = told_of(state.bias_sigma_radps(walk.node), float(x[at]), variance)

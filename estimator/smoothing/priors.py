@@ -59,7 +59,7 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
             unit = rows[rows[:, 2] == 1.0][-1]
             mean += [float(unit[10]), 0.0, 0.0]
             bias = state.bias_sigma_radps(walk.node)
-            known_by += [float(unit[11]) ** -2, bias**-2, physics.SCALE_SIGMA**-2]
+            known_by += [float(unit[11]) ** -2, bias**-2, state.scale_sigma(walk.node) ** -2]
     size = layout.length * layout.width
     for row in state.ledger.table("stands"):
         number = int(row[1])

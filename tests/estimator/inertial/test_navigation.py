@@ -9,10 +9,12 @@ from hypothesis import strategies as st
 from msgspec import structs
 from scipy.spatial.transform import Rotation
 
+from estimator.inertial.holding import GYRO_SCALE_SIGMA
 from estimator.inertial.levelling import ALIGN_S
 from estimator.inertial.navigation import BRIDGED_S, EACH_S, JITTER_MOST_S, navigate
 from estimator.inertial.record import navigation_of, record_of
 from estimator.inertial.samples import PIECE_S, pieces
+from estimator.inertial.strapdown import ATTITUDE_WALK
 from estimator.measurements.imu import Imu
 from tests.estimator.inertial.gait import AROUND, STEP_S, Stride, walked
 from tests.estimator.inertial.led import followed, true_m, unsure_m, where
@@ -25,10 +27,32 @@ def test_displacements_follow_each_other_and_lead_along_the_way() -> None:
     assert texts == []
     assert all(after.from_t == before.t for before, after in pairwise(found))
     assert all(d.from_t is not None and d.t - d.from_t == pytest.approx(EACH_S) for d in found)
-    assert found[0].from_t == pytest.approx(50.0 + ALIGN_S)
+    assert found[0].from_t == pytest.approx(50.0)
     for upto in range(10, len(found), 7):
         assert np.linalg.norm(where(found[:upto]) - true_m(GAIT, found[upto - 1].t)) < 0.3
     assert np.linalg.norm(where(found) - GAIT.place_m[-1]) < 0.3
+
+
+@pytest.mark.parametrize("first", [0, 400])
+def test_the_time_in_which_a_boot_is_levelled_is_told_as_well(first: int) -> None:
+    """It stands there, or swings."""
+    gait = walked([Stride()] * 5, rests_s=2.0)
+    (told, *_), _ = followed([gait.imu(first)])
+    assert told.from_t == pytest.approx(first * STEP_S)
+    assert told.t == pytest.approx(first * STEP_S + ALIGN_S)
+    moved = true_m(gait, told.t) - true_m(gait, told.from_t or 0.0)
+    assert told.sigma_m is not None
+    assert np.linalg.norm(where([told]) - moved) < 2.5 * told.sigma_m
+    assert told.sigma_m < 0.02 or first > 0
+
+
+def test_whoever_goes_down_a_stairwell_is_ever_less_sure_where_he_faces() -> None:
+    """Turns the same way are off by what a gyro's scale is; a corner and back by no more than the corner."""
+    quarter = 0.5 * np.pi
+    well, _ = followed([walked([Stride(1.0, quarter)] * 40).imu()])
+    corners, _ = followed([walked([Stride(1.0, quarter), Stride(1.0, -quarter)] * 20).imu()])
+    assert sum(d.turned_rad2 for d in well) > (GYRO_SCALE_SIGMA * 40.0 * quarter) ** 2
+    assert sum(d.turned_rad2 for d in corners) < 2.0 * ATTITUDE_WALK**2 * corners[-1].t + 1e-4
 
 
 def test_a_displacement_says_what_its_way_is_unsure_by() -> None:

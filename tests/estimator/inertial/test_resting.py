@@ -1,5 +1,7 @@
 """What rests tell of gyros."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -7,11 +9,11 @@ from estimator.inertial.advancing import advance
 from estimator.inertial.boot import BIAS_RADPS, Boot
 from estimator.inertial.resting import (
     ANEW_RAD2PS2,
-    GRANTED_RADPS,
     RESTED_RADPS,
     SETTLES_RADPS,
     TOLD_AFTER_S,
     UNRESTED_RADPS,
+    believed,
 )
 from tests.estimator.inertial.gait import STEP_S, Gait
 from tests.estimator.inertial.led import followed, true_m, where
@@ -42,13 +44,32 @@ def test_who_walks_when_his_unit_is_switched_on_has_unknown_biases_until_he_rest
 
 def test_a_bias_that_no_rest_has_told_is_unknown_and_another_one_afterwards() -> None:
     found, _ = followed(biased(Moves().walks(10).rests(3.0).walks(8).gait()).readings())
-    assert found[0].bias_rad2ps2 == pytest.approx(UNRESTED_RADPS**2 - GRANTED_RADPS**2)
+    assert found[0].bias_rad2ps2 == pytest.approx(UNRESTED_RADPS**2 - RESTED_RADPS**2)
     changed = [d for d in found[1:] if d.bias_rad2ps2 > 0.0]
     assert [d.bias_rad2ps2 for d in changed] == [ANEW_RAD2PS2]
     assert 11.0 + 2.0 <= changed[0].t <= 11.0 + 3.5
     rested = [d for d in found if d.rested_radps > 0.0]
     assert len(rested) == 1
     assert TOLD_AFTER_S - 0.5 <= rested[0].t - changed[0].t <= TOLD_AFTER_S + 1.0
+
+
+@pytest.mark.parametrize("bias_radps", [0.0, 0.05])
+def test_a_first_rest_that_ends_too_soon_says_so_and_is_believed_of_bad_units_only(bias_radps: float) -> None:
+    """The boot begins to turn in its last fifth of a second."""
+    gait = Moves().rests(0.3).turns(0.3, 2.0).rests(1.0).gait()
+    boot = led(gait._replace(rate=gait.rate + bias_radps)._replace(force=gait.force[:101]))
+    off_radps = np.linalg.norm(boot.held.sensors[6:] - bias_radps)
+    assert boot.gyros[BIAS_RADPS] > 2.0 * RESTED_RADPS
+    assert off_radps < 2.0 * np.sqrt(3.0) * boot.gyros[BIAS_RADPS]
+
+
+def test_of_trembling_rates_little_is_bias_and_of_steady_ones_all() -> None:
+    turning = np.array([0.0, 0.005, 0.018])
+    trembling, left2 = believed(turning, 0.02**2)
+    assert trembling < 0.3
+    assert 0.005 < math.sqrt(left2) < 0.012
+    assert believed(turning, 0.0) == pytest.approx((1.0, 0.0))
+    assert believed(np.full(3, 0.05), 0.02**2)[0] > 0.7
 
 
 def test_what_a_rest_has_told_already_is_nothing_new() -> None:
