@@ -15,8 +15,8 @@ from estimator.fusion.way import End, offset
 from estimator.graph.dense import factorise, inverse
 from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute
 from estimator.graph.kirchhoff import Kirchhoff
-from estimator.graph.robust import mixture_cost, weigh
-from estimator.graph.scatter import add_motion, couple, localise, scatter_rows
+from estimator.graph.robust import mixture_cost, prior_cost, total_cost, weigh
+from estimator.graph.scatter import add_motion, add_part, couple, localise, scatter_rows
 from estimator.graph.variable import Variable
 from estimator.inertial.advancing import advance
 from estimator.inertial.boot import Boot
@@ -28,7 +28,7 @@ from estimator.smoothing.bent import add_bends
 from estimator.smoothing.chosen import choose
 from estimator.smoothing.ends import Nodes, Table, place_ends, stand
 from estimator.smoothing.learn import noise_scores
-from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals
+from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals, stretch
 from estimator.smoothing.moved import disagreeing
 from estimator.smoothing.obstructed import excess
 from estimator.smoothing.slips import gains, unsure
@@ -54,6 +54,8 @@ def warm_up() -> None:
     wrap(one)
     weigh(one, one, one, *strided)
     mixture_cost(one, one, *strided)
+    total_cost(np.zeros(0, dtype=np.int64), one, one, *strided)
+    prior_cost(one, np.zeros(1, dtype=np.intp), one, one)
     find_modes(Sought("range", place, one, one, 0.0, 1.0, np.zeros(2), np.eye(2)))
 
 
@@ -66,7 +68,7 @@ def _warm_chain() -> None:
     one, x = np.ones(1), np.zeros(n)
     couple(columns, n, n, np.zeros(1, dtype=np.int64), np.zeros((1, s), dtype=np.bool_))
     localise(columns, n, n, slab, np.zeros((2, n + s), dtype=np.int64), slab.copy())
-    scatter_rows(slab, slab, slab, columns, np.zeros((1, ANY)), one, one, diagonal, wide, corner, rest)
+    scatter_rows(slab, slab, columns, np.zeros((1, ANY)), one, one, diagonal, wide, corner, rest)
     between, states = np.zeros((1, 12)), np.zeros((k, n))
     motion = unit_motion(between, one, states)
     misfit(motion)
@@ -80,6 +82,7 @@ def _warm_chain() -> None:
     add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)
     eliminate(0, k, diagonal, link, wide)
     substitute(diagonal, link, wide, rest, np.zeros((k, n)))
+    add_part(slab, corner, rest, corner, rest)
     selected_inverse(diagonal, link, wide, corner, np.zeros((k, 1, n, n)), np.zeros((k - 1, 1, n, n)))
     strongest(one, one, one, 1.0, 1)
     place = np.zeros((1, 3))
@@ -96,6 +99,7 @@ def _warm_chain() -> None:
     residuals(readings, x)
     add_unsure(jacobians(readings, x), place, place, place, place, np.ones(5))
     apart(readings, x)
+    stretch(readings, x, no, no, one)
     excess(slab, one, one)
     disagreeing(one, 0.0)
     single_sigmas(one, one, one)

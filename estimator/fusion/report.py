@@ -74,7 +74,7 @@ def _estimate(
     if node.otherwise:
         doubt = doubt_m2(node.otherwise, np.array([east, north]))
         ee, en, nn = ee + float(doubt[0, 0]), en + float(doubt[0, 1]), nn + float(doubt[1, 1])
-    heading, sigma = _heading(state, node, covariance)
+    heading, sigma = _heading(state, node, covariance) if node.moving else (None, None)
     return NodeEstimate(
         node=node.node,
         role=node.role,

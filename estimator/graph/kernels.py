@@ -19,12 +19,12 @@ def half_inverse(matrix: Array) -> bool:
     Rows of A and of what becomes C⁻¹ are reduced together, above and below the diagonal.
 
     Returns:
-        False where A is not positive definite: then it is spoilt.
+        False where A is not positive definite and finite: then it is spoilt.
     """
     n = len(matrix)
     for j in range(n):
         pivot = matrix[j]
-        if not pivot[j] > 0.0:
+        if not 0.0 < pivot[j] < np.inf:
             return False
         scale = 1.0 / np.sqrt(pivot[j])
         for c in range(n):

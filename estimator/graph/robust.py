@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.graph.dense import Array
+from estimator.graph.dense import Array, Indices
 
 
 class Mixture(NamedTuple):
@@ -98,6 +98,33 @@ def mixture_cost(residual: Array, sigma: Array, outliers: Array, shift: Array, s
         from_bad = rare - 0.5 * (np.log(bad) + (residual[i] - shift[i]) ** 2 / bad)
         cost[i] = -np.logaddexp(from_good, from_bad)
     return cost
+
+
+@njit(cache=True, error_model="numpy")
+def total_cost(
+    left_out: Indices, residual: Array, sigma: Array, outliers: Array, shift: Array, spread: Array
+) -> float:
+    """The sum of `mixture_cost`, but for those readings that are left out."""
+    cost = mixture_cost(residual, sigma, outliers, shift, spread)
+    for i in left_out:
+        cost[i] = 0.0
+    return float(cost.sum())
+
+
+@njit(cache=True)
+def prior_cost(x: Array, at: Indices, mean: Array, information: Array) -> float:
+    """Negative log likelihood of independent priors of some numbers of an estimate, up to a constant.
+
+    Args:
+        x: the estimate.
+        at: which numbers, n.
+        mean: of each, n.
+        information: one over the variance of each, n.
+    """
+    total = 0.0
+    for i in range(len(at)):
+        total += information[i] * (x[at[i]] - mean[i]) ** 2
+    return 0.5 * total
 
 
 def cauchy_cost(residual: Array, scale: float) -> Array:

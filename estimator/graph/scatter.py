@@ -70,7 +70,6 @@ def localise(
 @njit(cache=True)
 def scatter_rows(
     chosen: Integers,
-    row: Integers,
     slab: Integers,
     columns: Integers,
     jacobian: Array,
@@ -85,9 +84,8 @@ def scatter_rows(
 
     Args:
         chosen: the rows to be added.
-        row: the reading that each row belongs to, m.
-        slab: keyframe of each reading; any where it touches none.
-        columns: which numbers each reading depends on, c: those of the keyframe first (below its width),
+        slab: keyframe of each row, m; any where it touches none.
+        columns: which numbers each row depends on, m × c: those of the keyframe first (below its width),
             those of the border after them; −1: unused.
         jacobian: derivatives, m × c.
         information: P⁻¹, m.
@@ -102,9 +100,9 @@ def scatter_rows(
     moving, lasting = np.empty(most, dtype=np.uint64), np.empty(most, dtype=np.uint64)
     by_moving, by_lasting = np.empty(most), np.empty(most)
     for r in chosen:
-        m, s, reading = 0, 0, row[r]
+        m, s = 0, 0
         for a in range(most):
-            at, slope = columns[reading, a], jacobian[r, a]
+            at, slope = columns[r, a], jacobian[r, a]
             if at < 0 or slope == 0.0:
                 continue
             if at < width:
@@ -113,7 +111,7 @@ def scatter_rows(
             else:
                 lasting[s], by_lasting[s] = at - width, slope
                 s += 1
-        square, beside = diagonal[slab[reading]], wide[slab[reading]]
+        square, beside = diagonal[slab[r]], wide[slab[r]]
         for a in range(m):
             own, across = square[moving[a]], beside[moving[a]]
             pulled = by_moving[a] * information[r]
@@ -127,6 +125,23 @@ def scatter_rows(
             corner_gradient[lasting[a]] += pulled * residual[r]
             for b in range(s):
                 own[lasting[b]] += pulled * by_lasting[b]
+
+
+@njit(cache=True)
+def add_part(at: Integers, part: Array, part_gradient: Array, corner: Array, gradient: Array) -> None:
+    """Add what one group says of some of the border's numbers to what is known of all of them.
+
+    Args:
+        at: which of them, m.
+        part: m × m.
+        part_gradient: m.
+        corner: s × s, changed.
+        gradient: s, changed.
+    """
+    for i in range(len(at)):
+        gradient[at[i]] += part_gradient[i]
+        for j in range(len(at)):
+            corner[at[i], at[j]] += part[i, j]
 
 
 @njit(cache=True)

@@ -53,7 +53,7 @@ def add_bends(
     a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
     bend, both = np.empty((3, 3)), np.empty((3, 3))
     pulled_a, pulled_b = np.empty((3, 3)), np.empty((3, 3))
-    width = diagonal.shape[1]
+    width, corners = diagonal.shape[1], corner.reshape(1, *corner.shape)
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
     for i in chosen:
@@ -79,42 +79,41 @@ def add_bends(
         if across == 0.0 and upwards == 0.0 and along == 0.0:
             continue
         bend_at(e, n, u, across, upwards, along, bend)
-        first, second = columns[i, 0], columns[i, STATES]
-        square, beside = diagonal[slab[i]], wide[slab[i]]
+        at, first, second = slab[i], columns[i, 0], columns[i, STATES]
         a_moves, b_moves = 0 <= first < width, 0 <= second < width
         # Many readings are made at their keyframes: from there nothing has been turned.
-        a_turns, b_turns = a_moves and by_a.any(), b_moves and by_b.any()
+        a_turns, b_turns = a_moves and turns(by_a), b_moves and turns(by_b)
         if a_moves:
-            add_block(square, first, first, bend, 1.0)
+            add_block(diagonal, at, first, first, bend, 1.0)
             if a_turns:
-                add_turned(square, first, bend, by_a, pulled_a, both)
+                add_turned(diagonal, at, first, bend, by_a, pulled_a, both)
         if b_moves:
-            add_block(square, second, second, bend, 1.0)
+            add_block(diagonal, at, second, second, bend, 1.0)
             if b_turns:
-                add_turned(square, second, bend, by_b, pulled_b, both)
+                add_turned(diagonal, at, second, bend, by_b, pulled_b, both)
         if a_moves and b_moves:
-            add_both(square, first, second, bend, -1.0)
+            add_both(diagonal, at, first, second, bend, -1.0)
             if a_turns:
-                add_both(square, second, first + PLACES, pulled_a, -1.0)
+                add_both(diagonal, at, second, first + PLACES, pulled_a, -1.0)
             if b_turns:
-                add_both(square, first, second + PLACES, pulled_b, -1.0)
+                add_both(diagonal, at, first, second + PLACES, pulled_b, -1.0)
             if a_turns and b_turns:
-                multiply(by_a.T, pulled_b, both)
-                add_both(square, first + PLACES, second + PLACES, both, -1.0)
+                multiply_across(by_a, pulled_b, both)
+                add_both(diagonal, at, first + PLACES, second + PLACES, both, -1.0)
         if first >= width:
-            add_block(corner, first - width, first - width, bend, 1.0)
+            add_block(corners, 0, first - width, first - width, bend, 1.0)
             if b_moves:
-                add_block(beside, second, first - width, bend, -1.0)
+                add_block(wide, at, second, first - width, bend, -1.0)
                 if b_turns:
-                    add_block(beside, second + PLACES, first - width, pulled_b.T, -1.0)
+                    add_across(wide, at, second + PLACES, first - width, pulled_b, -1.0)
         if second >= width:
-            add_block(corner, second - width, second - width, bend, 1.0)
+            add_block(corners, 0, second - width, second - width, bend, 1.0)
             if a_moves:
-                add_block(beside, first, second - width, bend, -1.0)
+                add_block(wide, at, first, second - width, bend, -1.0)
                 if a_turns:
-                    add_block(beside, first + PLACES, second - width, pulled_a.T, -1.0)
+                    add_across(wide, at, first + PLACES, second - width, pulled_a, -1.0)
             elif first >= width:
-                add_both(corner, first - width, second - width, bend, -1.0)
+                add_both(corners, 0, first - width, second - width, bend, -1.0)
 
 
 @njit(cache=True)
@@ -146,18 +145,39 @@ def bend_at(e: float, n: float, u: float, across: float, upwards: float, along: 
 
 
 @njit(cache=True)
-def add_block(target: Array, row: int, column: int, block: Array, sign: float) -> None:
-    """Add ±`block`, 3 × 3, to a matrix, from a row and a column on."""
+def turns(turned: Array) -> bool:
+    """Whether anything but its first three numbers moves an end: any derivative, 3 × 3, is not 0."""
+    size = 0.0
     for r in range(PLACES):
         for c in range(PLACES):
-            target[row + r, column + c] += sign * block[r, c]
+            size += abs(turned[r, c])
+    return size > 0.0
 
 
 @njit(cache=True)
-def add_both(target: Array, row: int, column: int, block: Array, sign: float) -> None:
-    """Add ±`block`, 3 × 3, to a symmetric matrix, from a row and a column on, and across its diagonal."""
-    add_block(target, row, column, block, sign)
-    add_block(target, column, row, block.T, sign)
+def add_block(targets: Array, at: int, row: int, column: int, block: Array, sign: float) -> None:
+    """Add ±`block`, 3 × 3, to one of some matrices, from a row and a column on.
+
+    A view of the matrix would be counted, again and again, and that takes longer than the sum.
+    """
+    for r in range(PLACES):
+        for c in range(PLACES):
+            targets[at, row + r, column + c] += sign * block[r, c]
+
+
+@njit(cache=True)
+def add_across(targets: Array, at: int, row: int, column: int, block: Array, sign: float) -> None:
+    """The same with the block's transpose."""
+    for r in range(PLACES):
+        for c in range(PLACES):
+            targets[at, row + r, column + c] += sign * block[c, r]
+
+
+@njit(cache=True)
+def add_both(targets: Array, at: int, row: int, column: int, block: Array, sign: float) -> None:
+    """The same to a symmetric matrix: the block, and across the diagonal its transpose."""
+    add_block(targets, at, row, column, block, sign)
+    add_across(targets, at, column, row, block, sign)
 
 
 @njit(cache=True)
@@ -169,11 +189,22 @@ def multiply(one: Array, other: Array, product: Array) -> None:
 
 
 @njit(cache=True)
-def add_turned(square: Array, first: int, bend: Array, turned: Array, pulled: Array, both: Array) -> None:
+def multiply_across(one: Array, other: Array, product: Array) -> None:
+    """Put Aᵀ B in the place of `product`, 3 × 3 each."""
+    for r in range(PLACES):
+        for c in range(PLACES):
+            product[r, c] = one[0, r] * other[0, c] + one[1, r] * other[1, c] + one[2, r] * other[2, c]
+
+
+@njit(cache=True, forceinline=True)
+def add_turned(
+    targets: Array, at: int, first: int, bend: Array, turned: Array, pulled: Array, both: Array
+) -> None:
     """Add what the block of a moving end has besides its place: B T, its transpose, and Tᵀ B T.
 
     Args:
-        square: of its keyframe, n × n, changed.
+        targets: of the keyframes, k × n × n, changed.
+        at: its keyframe.
         first: the first of its numbers.
         bend: B, curvature by its place, 3 × 3.
         turned: T, derivatives of its place by its last three numbers, 3 × 3.
@@ -181,6 +212,6 @@ def add_turned(square: Array, first: int, bend: Array, turned: Array, pulled: Ar
         both: is used, 3 × 3.
     """
     multiply(bend, turned, pulled)
-    add_both(square, first, first + PLACES, pulled, 1.0)
-    multiply(turned.T, pulled, both)
-    add_block(square, first + PLACES, first + PLACES, both, 1.0)
+    add_both(targets, at, first, first + PLACES, pulled, 1.0)
+    multiply_across(turned, pulled, both)
+    add_block(targets, at, first + PLACES, first + PLACES, both, 1.0)

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.graph.dense import Array, factorise, inverse, mended, solve
+from estimator.graph.scatter import add_part
 from estimator.smoothing.groups import Group
 from estimator.smoothing.strand import Strand
 
@@ -38,12 +39,14 @@ class Chain:
         strands: the chain of each group; of the last one there is only the border.
         width: n.
         lasting: s.
+        promised: after `solve`: half the product of the gradient and the step, what a parabola gains by it.
     """
 
     def __init__(self, length: int, groups: Sequence[Group]) -> None:
         self.strands = [Strand(length, group) for group in groups]
         self.width = sum(len(group.columns) for group in groups)
         self.lasting = len(groups[-1].lasting)
+        self.promised = 0.0
         self._length = length
         self._cholesky = factorise(np.zeros((0, 0)))
 
@@ -58,24 +61,15 @@ class Chain:
         keyframes = np.zeros((self._length, self.width))
         for strand in self.strands:
             keyframes[:, strand.group.columns] = strand.gradient
-        return np.concatenate([keyframes.ravel(), self._corner_gradient()])
+        return np.concatenate([keyframes.ravel(), self._corner()[1]])
 
-    def _corner(self) -> Array:
-        """C, s × s."""
+    def _corner(self) -> tuple[Array, Array]:
+        """C, s × s, and the border's gradient, s."""
         *moving, rest = self.strands  # the last one has all of the border
-        corner = rest.corner.copy()
+        corner, gradient = rest.corner.copy(), rest.corner_gradient.copy()
         for strand in moving:
-            lasting = strand.group.lasting
-            corner[lasting[:, None], lasting] += strand.corner
-        return corner
-
-    def _corner_gradient(self) -> Array:
-        """The border's gradient, s."""
-        *moving, rest = self.strands
-        gradient = rest.corner_gradient.copy()
-        for strand in moving:
-            gradient[strand.group.lasting] += strand.corner_gradient
-        return gradient
+            add_part(strand.group.lasting, strand.corner, strand.corner_gradient, corner, gradient)
+        return corner, gradient
 
     def remainder(self, keyframe: int) -> Remainder:
         """Eliminate what lies before a keyframe: what is left of it on that keyframe and the border.
@@ -95,7 +89,7 @@ class Chain:
             matrix[own[:, None], rest] = strand.border[keyframe]
             matrix[rest[:, None], own] = strand.border[keyframe].T
             vector[own] = strand.gradient[keyframe]
-        matrix[self.width :, self.width :], vector[self.width :] = self._corner(), self._corner_gradient()
+        matrix[self.width :, self.width :], vector[self.width :] = self._corner()
         return Remainder(0.5 * (matrix + matrix.T), vector)
 
     def reduce(self, mend: bool = True) -> Array:
@@ -112,7 +106,7 @@ class Chain:
         """
         for strand in self.strands:
             strand.eliminate(self._length, mend)
-        corner, gradient = self._corner(), self._corner_gradient()
+        corner, gradient = self._corner()
         try:
             self._cholesky = factorise(corner)
         except ValueError:
@@ -132,6 +126,7 @@ class Chain:
         """
         gradient = self.reduce(mend)
         fixed = solve(self._cholesky, gradient)
+        self.promised = 0.5 * (float(gradient @ fixed) + sum(strand.eased for strand in self.strands))
         steps = np.zeros((self._length, self.width))
         for strand in self.strands:
             steps[:, strand.group.columns] = strand.substitute(fixed[strand.group.lasting])

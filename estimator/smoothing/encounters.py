@@ -6,6 +6,7 @@ other.
 """
 
 import numpy as np
+from numba import njit
 
 from estimator.fusion import physics
 from estimator.graph.dense import Array
@@ -28,6 +29,7 @@ def candidates(t: Array, link: Array, value: Array) -> Array:
     return found
 
 
-def near_dbm(power_dbm: Array, exponent: Array) -> Array:
-    """The power expected at the edge of the near zone, m (dBm)."""
-    return np.asarray(power_dbm - 10.0 * exponent * np.log10(physics.NEAR_M))
+@njit(cache=True)
+def near_dbm(power_dbm: float, exponent: float) -> float:
+    """The power expected at the edge of the near zone (dBm)."""
+    return float(power_dbm - 10.0 * exponent * np.log10(physics.NEAR_M))

@@ -4,13 +4,16 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
+from estimator.fusion import physics
 from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import bearing_at
 from estimator.measurements.range import range_at
 from estimator.measurements.rssi import rssi_at
+from estimator.smoothing.encounters import near_dbm
 from estimator.smoothing.ends import FIXED, UNIT, Table, place_end, place_ends
 
 ANY = 14
@@ -176,6 +179,30 @@ def apart(readings: Readings, x: Array) -> Array:
         for c in range(3):
             found[i, c] = a[c] - b[c]
     return found
+
+
+@njit(cache=True)
+def stretch(
+    readings: Readings, x: Array, inside: NDArray[np.bool_], strongest: NDArray[np.bool_], sigma: Array
+) -> None:
+    """Through a floor a reading is worth little, and an encounter is sharp.
+
+    Args:
+        readings: of the window.
+        x: the estimate, flat.
+        inside: which pairs are ranges or powers inside the building, m.
+        strongest: which are the strongest powers of their links for some time, m.
+        sigma: standard deviations of all rows, m at least, changed.
+    """
+    way, kinds, extra = apart(readings, x), readings.kind, readings.extra
+    value, constants = readings.value, readings.constant
+    for i in range(len(kinds)):
+        e, n, u = way[i, 0], way[i, 1], way[i, 2]
+        if inside[i] and abs(u) > physics.FLOOR_M:
+            sigma[i] = np.hypot(sigma[i], physics.FLOOR_SIGMA[0 if kinds[i] == RANGE else 1])
+        close = strongest[i] and np.sqrt(e * e + n * n + u * u) <= physics.ENCOUNTER_M
+        if close and value[i] >= near_dbm(x[extra[i, 0]] + constants[i], x[extra[i, 1]]):
+            sigma[i] = physics.NEAR_SIGMA_DB
 
 
 @njit(cache=True)

@@ -13,10 +13,10 @@ from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import wrap
 from estimator.smoothing.chosen import choose, kept
-from estimator.smoothing.encounters import candidates, near_dbm
+from estimator.smoothing.encounters import candidates
 from estimator.smoothing.ends import FREE, UNIT, Ends, nodes_of, place_ends
 from estimator.smoothing.layout import Layout
-from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals
+from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals, stretch
 from estimator.smoothing.obstructed import excess
 
 DROP = len(physics.NOISES) - 1
@@ -197,27 +197,9 @@ class Rows:
             jacobian: of the rows, m × 14, by which the noise of a place becomes one of the reading.
         """
         self.sigma = self._told.copy()
-        way = apart(self._readings, x)
-        self._through_floors(way)
-        self._sharpen(x, way)
+        stretch(self._readings, x, self._inside, self._strongest, self.sigma)
         a, b, on, by = (ends.unsure_m2 for ends in (self._a, self._b, self._on, self._by))
         add_unsure(jacobian, a, b, on, by, self.sigma)
-
-    def _through_floors(self, way: Array) -> None:
-        m = len(self.pairs)
-        through = self._inside & (np.abs(way[:, 2]) > physics.FLOOR_M)
-        if through.any():
-            lost = np.where(self.pairs[:, 1] == RANGE, *physics.FLOOR_SIGMA)
-            self.sigma[:m] = np.where(through, np.hypot(self.sigma[:m], lost), self.sigma[:m])
-
-    def _sharpen(self, x: Array, way: Array) -> None:
-        at = np.flatnonzero(self._strongest)
-        if not len(at):
-            return
-        extra = x[self._readings.extra[at]]
-        near = near_dbm(extra[:, 0] + self.pairs[at, 7], extra[:, 1])
-        close = np.linalg.norm(way[at], axis=1) <= physics.ENCOUNTER_M
-        self.sigma[at[close & (self.pairs[at, 4] >= near)]] = physics.NEAR_SIGMA_DB
 
     def places(self, x: Array) -> tuple[Array, Array]:
         """Where both ends of each pair are at an estimate, m × 3 each (m)."""

@@ -9,7 +9,7 @@ from estimator.fusion.ledger import RSSI
 from estimator.fusion.prior import Prior
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
-from estimator.graph.robust import Weighted, mixture_cost, weigh
+from estimator.graph.robust import Weighted, prior_cost, total_cost, weigh
 from estimator.graph.scatter import add_motion
 from estimator.smoothing.bent import add_bends
 from estimator.smoothing.carried import Carried
@@ -55,14 +55,13 @@ class Problem:
         self._carried = None if prior is None else Carried(layout, prior)
         coupled = [rows.columns] if self._carried is None else [rows.columns, self._carried.coupled]
         self._groups = Groups(layout.width, layout.border, coupled)
-        self._every = np.arange(len(rows.slab))
-        self.left_out: Integers = self._every[:0]
+        self.left_out: Integers = np.zeros(0, dtype=np.int64)
         self._placed = self._groups.placed(rows.slab, rows.columns)
         self._pairs = [part[: np.searchsorted(part, len(rows.pairs))] for part in self._placed.parts]
         size, width = layout.length * layout.width, max(layout.width, 1)
         slab = np.where(self._at < size, self._at // width, 0)
         columns = np.where(self._at < size, self._at % width, self._at - size + layout.width)
-        self._known = self._groups.placed(slab, columns[:, None])
+        self._known, self._ones = self._groups.placed(slab, columns[:, None]), np.ones((len(slab), 1))
 
     def _way(self, index: int, walk: Walk) -> tuple[Array, Array | Free]:
         """Times between a walk's keyframes, and what lies between them wherever they are."""
@@ -106,11 +105,10 @@ class Problem:
     def cost(self, x: Array, residual: Array, motions: list[Motion]) -> float:
         """Negative log likelihood up to a constant: mixtures of the readings, motion, priors."""
         rows = self.rows
-        costs = mixture_cost(residual, rows.sigma, *rows.noise.T)
-        costs[self.left_out] = 0.0
-        total = float(costs.sum())
-        total += sum(misfit(motion) for motion in motions)
-        total += 0.5 * float((self._information * (x[self._at] - self._mean) ** 2).sum())
+        total: float = total_cost(self.left_out, residual, rows.sigma, *rows.noise.T)
+        total += prior_cost(x, self._at, self._mean, self._information)
+        for motion in motions:
+            total += misfit(motion)
         if self._carried is not None:
             total += self._carried.cost(x)
         return total
@@ -196,12 +194,10 @@ class Problem:
             certain = np.where(known.slab <= until, certain, 0.0)
             placed = placed._replace(slab=np.minimum(placed.slab, until))
             known = known._replace(slab=np.minimum(known.slab, until))
-        ones, off = np.ones((len(certain), 1)), self._mean - x[self._at]
-        every = np.arange(len(certain))
-        for strand, part in zip(chain.strands, known.parts, strict=True):
-            strand.add(known, part, every, ones, certain, off)
-        for strand, part in zip(chain.strands, placed.parts, strict=True):
-            strand.add(placed, part, self._every, linear.jacobian, information, weighted.residual)
+        off = self._mean - x[self._at]
+        for strand, priors, readings in zip(chain.strands, known.parts, placed.parts, strict=True):
+            strand.add(known, priors, self._ones, certain, off)
+            strand.add(placed, readings, linear.jacobian, information, weighted.residual)
         return chain
 
     def _step(
@@ -222,7 +218,6 @@ class Problem:
             chain = self.assemble(x, linear, weighted, motions)
             self.bend(chain, x, weighted, signed)
             chain.damp(damping)
-            slope = chain.slope()
             try:
                 steps, fixed = chain.solve(mend=not signed)
             except ValueError:
@@ -230,8 +225,7 @@ class Problem:
                     raise
                 continue
             break
-        step = np.concatenate([steps.ravel(), fixed])
-        return step, 0.5 * float(slope @ step)
+        return np.concatenate([steps.ravel(), fixed]), chain.promised
 
     def bend(self, chain: Chain, x: Array, weighted: Weighted, signed: bool) -> None:
         """Add the rows' own curvature to the normal equations: for the step, not for what is known.

@@ -23,6 +23,7 @@ class Strand:
         wide: B and the gradient of the keyframes beside it, k × n × (s + 1).
         corner: C, s × s.
         corner_gradient: of the border, s.
+        eased: gᵀ D⁻¹ g of the keyframes eliminated so far, as each one's was by then.
     """
 
     def __init__(self, length: int, group: Group) -> None:
@@ -34,6 +35,7 @@ class Strand:
         self.wide: Array = np.zeros((length, width, border + 1))
         self.corner: Array = np.zeros((border, border))
         self.corner_gradient: Array = np.zeros(border)
+        self.eased = 0.0
         self._done = 0
 
     @property
@@ -47,28 +49,20 @@ class Strand:
         return self.wide[:, :, -1]
 
     def add(
-        self,
-        placed: Placed,
-        chosen: Integers,
-        row: Integers,
-        jacobian: Array,
-        information: Array,
-        residual: Array,
+        self, placed: Placed, chosen: Integers, jacobian: Array, information: Array, residual: Array
     ) -> None:
         """Add some of m rows.
 
         Args:
-            placed: the readings.
-            chosen: which rows; their readings are the group's.
-            row: the reading that each row belongs to, m.
+            placed: the rows.
+            chosen: which of them; they are the group's.
             jacobian: derivatives, m × c.
             information: P⁻¹, m.
             residual: z − h(x), m.
         """
         if len(chosen):
             blocks = self.diagonal, self.wide, self.corner, self.corner_gradient
-            at = placed.slab, placed.columns
-            scatter_rows(chosen, row, *at, jacobian, information, residual, *blocks)
+            scatter_rows(chosen, placed.slab, placed.columns, jacobian, information, residual, *blocks)
 
     def damp(self, damping: float) -> None:
         """Raise the diagonal by a share of itself (Marquardt)."""
@@ -88,13 +82,13 @@ class Strand:
         """
         if until <= self._done or not len(self.group.walks):
             return
-        if not np.isfinite(self.diagonal).all():
-            raise ValueError("the normal equations of the incident are not finite")
         at, mended_at = self._done, -1
         while at < until:
             at = eliminate(at, until, self.diagonal, self.link, self.wide)
             if at < until:
-                if not mend or at == mended_at or not np.isfinite(self.diagonal[at]).all():
+                if not np.isfinite(self.diagonal[at]).all():
+                    raise ValueError("the normal equations of the incident are not finite")
+                if not mend or at == mended_at:
                     raise ValueError("the normal equations of the incident are not positive definite")
                 self.diagonal[at] = mended(self.diagonal[at])
                 mended_at = at
@@ -102,6 +96,7 @@ class Strand:
         taken = wide.T @ wide
         self.corner -= taken[:-1, :-1]
         self.corner_gradient -= taken[:-1, -1]
+        self.eased += float(taken[-1, -1])
         self._done = until
 
     def substitute(self, fixed: Array) -> Array:

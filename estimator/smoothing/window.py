@@ -73,13 +73,18 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
         state.begun_t = state.refreshed_t = t
     # Whose heading is one of two is looked at as often as who may be at an image.
     turned = any(node.turned and not node.otherwise for node in state.nodes.values())
-    age = (t - state.refreshed_t) / (rarer * period_s(state))
-    waited = age >= CALM or (age >= 1.0 and state.bent_m > BENT_M)
-    # Where the window is solved rarely nobody looks: his images are asked about at the end.
-    waited = waited or (state.exposed and age >= EXPOSED and rarer == 1.0)
-    waited = waited or (state.suspected and age >= SUSPENSE) or state.bent_m > JOLT_M * rarer
-    if not (state.due or turned or waited):
-        return
+    if not (state.due or turned or state.bent_m > JOLT_M * rarer):
+        if state.suspected:
+            periods = SUSPENSE
+        elif state.exposed and rarer == 1.0:
+            # Where the window is solved rarely nobody looks: his images are asked about at the end.
+            periods = EXPOSED
+        else:
+            periods = 1.0 if state.bent_m > BENT_M else CALM
+        waited_s = (t - state.refreshed_t) / rarer
+        # Most ticks come too soon for any window: how much work this one is need not be asked.
+        if waited_s < periods * SOONEST_S or waited_s / period_s(state) < periods:
+            return
     solved_t = state.refreshed_t
     state.due, state.refreshed_t, state.bent_m = False, t, 0.0
     if refresh(state, solved_t) and state.due:

@@ -24,4 +24,4 @@ def test_a_single_reading_is_no_pass() -> None:
 
 def test_the_near_zone_ends_at_a_metre_and_a_half() -> None:
     expected = -40.0 - 25.0 * np.log10(1.5)
-    assert np.allclose(near_dbm(np.array([-40.0]), np.array([2.5])), expected)
+    assert np.isclose(near_dbm(-40.0, 2.5), expected)
