@@ -6,7 +6,6 @@ from estimator.fusion.descent import descend
 from estimator.fusion.free import free_motion
 from estimator.fusion.modes import Sought, find_modes
 from estimator.fusion.motion import walked
-from estimator.fusion.noise import single_sigmas
 from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.rows import FIELDS, ONE
 from estimator.fusion.silence import wandered_m2
@@ -15,7 +14,7 @@ from estimator.fusion.way import End, offset
 from estimator.graph.dense import factorise, inverse
 from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute
 from estimator.graph.kirchhoff import Kirchhoff
-from estimator.graph.robust import mixture_cost, prior_cost, total_cost, weigh
+from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
 from estimator.graph.scatter import add_motion, add_part, couple, localise, scatter_rows
 from estimator.graph.variable import Variable
 from estimator.inertial.advancing import advance
@@ -24,12 +23,14 @@ from estimator.inertial.loose import tell
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
+from estimator.smoothing.arranged import arrange, scattered, sigmas
 from estimator.smoothing.bent import add_bends
 from estimator.smoothing.chosen import choose
+from estimator.smoothing.elsewhere import costs_of
 from estimator.smoothing.ends import Nodes, Table, place_ends, stand
 from estimator.smoothing.learn import noise_scores
 from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals, stretch
-from estimator.smoothing.moved import disagreeing
+from estimator.smoothing.moved import ask
 from estimator.smoothing.obstructed import excess
 from estimator.smoothing.slips import gains, unsure
 from estimator.smoothing.turned import change_pairs, moved_from, turn_between
@@ -54,6 +55,7 @@ def warm_up() -> None:
     wrap(one)
     weigh(one, one, one, *strided)
     mixture_cost(one, one, *strided)
+    cauchy_cost(one, 1.0)
     total_cost(np.zeros(0, dtype=np.int64), one, one, *strided)
     prior_cost(one, np.zeros(1, dtype=np.intp), one, one)
     find_modes(Sought("range", place, one, one, 0.0, 1.0, np.zeros(2), np.eye(2)))
@@ -101,8 +103,11 @@ def _warm_chain() -> None:
     apart(readings, x)
     stretch(readings, x, no, no, one)
     excess(slab, one, one)
-    disagreeing(one, 0.0)
-    single_sigmas(one, one, one)
+    costs_of(one, one, place, no, one)
+    ask(slab, np.zeros((1, 10)), 0, 0, one, one, 0.0)
+    rows = arrange(np.zeros((1, 10)), place, place, slab, pair, *(stood,) * 5)
+    scattered(place, rows, slab, no)
+    sigmas(rows.nominal, rows.nominal, rows)
     turned_by = turn_between(place[:, :2], place[:, :2])
     moved_from(x, x, pair, pair, place[0, :2], turned_by)
     change_pairs(np.eye(2), one, pair, np.zeros((1, 2, 2)))

@@ -7,11 +7,9 @@ alike until an end has moved on. Taken for independent, they would make any esti
 import math
 
 import msgspec
-import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
-from estimator.graph.dense import Array
 
 
 class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
@@ -81,15 +79,6 @@ def single_sigma(white: float, common: float, alike: float) -> float:
     """
     before, now = white + (alike - 1.0) * common, white + alike * common
     return max(math.sqrt(before * now / white), physics.SIGMA_FLOOR_M)
-
-
-@njit(cache=True, error_model="numpy")
-def single_sigmas(white: Array, common: Array, alike: Array) -> Array:
-    """Those of m readings: see `single_sigma`."""
-    found = np.empty(len(white))
-    for i in range(len(white)):
-        found[i] = single_sigma(white[i], common[i], alike[i])
-    return found
 
 
 @njit(cache=True, error_model="numpy")

@@ -141,7 +141,6 @@ def substitute(diagonal: Array, link: Array, wide: Array, fixed: Array, steps: A
     tail[: across - 1] = -fixed
     rights = np.dot(wide.reshape(length * width, across), tail).reshape(length, width)
     for j in range(length - 1, -1, -1):
-        half, right, step = diagonal[j], rights[j], steps[j]
         if j < length - 1:
             for c in range(width):
                 block = c // size
@@ -152,12 +151,13 @@ def substitute(diagonal: Array, link: Array, wide: Array, fixed: Array, steps: A
             for r in range(width):
                 total = 0.0
                 for c in range(r + 1):
-                    total += half[r, c] * carried[c]
-                right[r] -= total
-        step[:] = 0.0
+                    total += diagonal[j, r, c] * carried[c]
+                rights[j, r] -= total
+        for c in range(width):
+            steps[j, c] = 0.0
         for r in range(width):
             for c in range(r + 1):
-                step[c] += half[r, c] * right[r]
+                steps[j, c] += diagonal[j, r, c] * rights[j, r]
 
 
 @njit(cache=True)

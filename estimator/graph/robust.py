@@ -127,6 +127,7 @@ def prior_cost(x: Array, at: Indices, mean: Array, information: Array) -> float:
     return 0.5 * total
 
 
+@njit(cache=True)
 def cauchy_cost(residual: Array, scale: float) -> Array:
     """Cauchy loss c²/2 log(1 + (r / c)²) of whitened residuals (m), c = `scale`."""
     cost: Array = 0.5 * scale**2 * np.log1p((residual / scale) ** 2)

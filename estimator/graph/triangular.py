@@ -43,7 +43,7 @@ def cholesky(matrix: Array) -> bool:
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def take_rows(own: Array, shares: Array, matrix: Array, top: int, left: int) -> None:
     """Take shares of a matrix's rows off another row, one after the other.
 
@@ -107,9 +107,9 @@ def forward(factor: Array, right: Array, first: int) -> None:
     n = len(right)
     for i in range(first, n):
         right[i] /= factor[i, i]
-        known, rest, row = right[i], right[i + 1 :], factor[i, i + 1 :]
-        for j in range(len(rest)):
-            rest[j] -= row[j] * known
+        known = right[i]
+        for j in range(i + 1, n):
+            right[j] -= factor[i, j] * known
 
 
 @njit(cache=True, error_model="numpy")
@@ -149,5 +149,8 @@ def solved(factor: Array, unscale: Array, right: Array) -> Array:
     forward(factor, answer, 0)
     n = len(answer)
     for i in range(n - 1, -1, -1):
-        answer[i] = (answer[i] - np.dot(factor[i, i + 1 :], answer[i + 1 :])) / factor[i, i]
+        total = answer[i]
+        for j in range(i + 1, n):
+            total -= factor[i, j] * answer[j]
+        answer[i] = total / factor[i, i]
     return answer * unscale

@@ -31,7 +31,9 @@ def changed_links(problem: Problem) -> list[Changed]:
     layout, pairs = problem.layout, problem.rows.pairs
     stands = np.zeros(len(layout.state.owners) + 1, dtype=bool)
     stands[[*layout.stands, -1]] = True
-    still = stands[pairs[:, 2:4].astype(np.intp)].all(axis=1) & (pairs[:, 1] == RSSI)
+    still = pairs[:, 1] == RSSI
+    for column in (2, 3):
+        still &= stands[pairs[:, column].astype(np.intp)]
     if not still.any():
         return []
     now, found = float(layout.grid[-1]), []

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from estimator.fusion.ledger import RANGE
@@ -28,16 +29,22 @@ UNSURE_M = 0.3
 UP_SIGMA_M = 1.0
 
 
+@njit(cache=True, error_model="numpy")
 def costs_of(residual: Array, sigma: Array, noise: Array, ranged: Flags, alike: Array) -> Array:
     """How much readings are worse than perfect ones, each in log likelihood.
 
     A wall makes all ranges too long that are measured through it. k of them that may share it are neither k
     witnesses nor one: they count as 2 √k.
     """
-    at_best = np.zeros(len(sigma))
-    cost = mixture_cost(residual, sigma, *noise.T) - mixture_cost(at_best, sigma, *noise.T)
-    cost = np.minimum(cost, cauchy_cost(residual / sigma, CAUCHY))
-    return np.where(ranged & (residual > 0.0), cost / np.sqrt(alike), cost)
+    outliers, shift, spread = noise[:, 0], noise[:, 1], noise[:, 2]
+    best = mixture_cost(np.zeros(len(sigma)), sigma, outliers, shift, spread)
+    cost = mixture_cost(residual, sigma, outliers, shift, spread)
+    most = cauchy_cost(residual / sigma, CAUCHY)
+    for i in range(len(cost)):
+        cost[i] = min(cost[i] - best[i], most[i])
+        if ranged[i] and residual[i] > 0.0:
+            cost[i] /= np.sqrt(alike[i])
+    return cost
 
 
 class Seen(NamedTuple):

@@ -1,6 +1,7 @@
 """Which walks of a window hang together: what direct readings do not couple meets in the border only."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -85,5 +86,5 @@ class Groups:
         group = np.empty(len(columns), dtype=np.int64)
         local = localise(columns, self._width, STATES, self._group, self._place, group)
         order = np.argsort(group, kind="stable")
-        ends = np.cumsum(np.bincount(group, minlength=len(self.each)))[:-1]
-        return Placed(slab, local, np.split(order, ends))
+        ends = np.searchsorted(group[order], np.arange(len(self.each) + 1)).tolist()
+        return Placed(slab, local, [order[first:last] for first, last in pairwise(ends)])

@@ -71,28 +71,25 @@ def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) ->
     usual = costs_of(residual, sigma, rows.noise[:m], kinds == RANGE, rows.alike[:m])
     recent = np.flatnonzero((rows.pairs[:, 0] > now - recent_s) & (kinds <= RSSI))
     recent = recent[np.argsort(rows.pairs[recent, 0], kind="stable")]
-    one, other = rows.pairs[recent, 2], rows.pairs[recent, 3]
     found: list[tuple[float, Moved]] = []
     suspected = False
     for node in state.nodes.values():
         if node.mode != "static" or node.role == "anchor":
             continue
-        own = recent[(one == node.index) | (other == node.index)]
         for together in BY_KIND if solved.rests else (*ALL_KINDS, *BY_KIND):
-            mine = own if together in ALL_KINDS else own[kinds[own] == together[0]]
+            kind = -1 if together in ALL_KINDS else together[0]
+            own, mine, suspicious, since, before = ask(
+                recent, rows.pairs, node.index, kind, usual, cost, now - NEW_S
+            )
             if len(mine) < READINGS_MIN:
                 continue
-            # Walls disagree with places all the time: not for them is a window solved again sooner.
-            newest = mine[rows.pairs[mine, 0] > now - NEW_S]
-            suspected = suspected or len(disagreeing(usual[mine], SUSPICION)) > 0
-            suspected = suspected or len(disagreeing(usual[newest], DOUBT)) > 0
+            suspected = suspected or suspicious
             asked = solved.rests or together in ALL_KINDS
             if not asked and together != (RANGE,):
                 continue
-            parts = [mine[first:] for first in disagreeing(cost[mine], SUSPICION).tolist()]
+            parts = [mine[first:] for first in since.tolist()]
             # It may be drawn to its new place already: then what disagrees lies in front.
-            backwards = disagreeing(cost[mine[::-1]], SUSPICION)[:1].tolist()
-            parts += [mine[: len(mine) - first] for first in backwards]
+            parts += [mine[: len(mine) - first] for first in before.tolist()]
             place, by = best_place(problem, solved, node, parts) if asked else None, solved
             if place is None and together == (RANGE,) and parts and rows.pairs[parts[0][0], 0] > now - NEW_S:
                 drawn = drawn_place(problem, solved, node, parts[0])
@@ -111,6 +108,55 @@ def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) ->
         # One that lies elsewhere makes its neighbours seem to, but less far: they are asked again without it.
         return [max(found, key=itemgetter(0))[1]], suspected or len(found) > 1
     return [moved for _, moved in found], suspected
+
+
+class Asked(NamedTuple):
+    """What readings to a node say of its place.
+
+    Attributes:
+        own: the readings to it, in order of epoch.
+        mine: those of them that are asked.
+        suspicious: it may lie elsewhere.
+        since: from which of those on they may disagree with its place, see `disagreeing`.
+        before: before which of the last ones they may, counted from the end; one at most.
+    """
+
+    own: Integers
+    mine: Integers
+    suspicious: bool
+    since: Integers
+    before: Integers
+
+
+@njit(cache=True)
+def ask(
+    recent: Integers, pairs: Array, number: int, kind: int, usual: Array, cost: Array, new_t: float
+) -> Asked:
+    """Ask the readings to one node whether they disagree with its place.
+
+    Args:
+        recent: readings, in order of epoch.
+        pairs: all of them, as rows of the ledger, m × 10.
+        number: of the node.
+        kind: of those that are asked; −1: all are.
+        usual: what each costs, walls among them, in log likelihood, m.
+        cost: what each costs, m.
+        new_t: epoch since which readings are new (s).
+    """
+    own, mine, newest = np.empty_like(recent), np.empty_like(recent), np.empty_like(recent)
+    all_of, some, new = 0, 0, 0
+    for i in recent:
+        if pairs[i, 2] == number or pairs[i, 3] == number:
+            own[all_of], all_of = i, all_of + 1
+            if kind < 0 or pairs[i, 1] == kind:
+                mine[some], some = i, some + 1
+                if pairs[i, 0] > new_t:
+                    newest[new], new = i, new + 1
+    own, mine, newest = own[:all_of], mine[:some], newest[:new]
+    # Walls disagree with places all the time: not for them is a window solved again sooner.
+    suspicious = len(disagreeing(usual[mine], SUSPICION)) > 0 or len(disagreeing(usual[newest], DOUBT)) > 0
+    backwards = disagreeing(cost[mine][::-1].copy(), SUSPICION)[:1]
+    return Asked(own, mine, suspicious, disagreeing(cost[mine], SUSPICION), backwards)
 
 
 @njit(cache=True)

@@ -7,20 +7,17 @@ from numpy.typing import NDArray
 
 from estimator.fusion import physics
 from estimator.fusion.ledger import BEARING, RANGE, RSSI
-from estimator.fusion.noise import LearnedNoise, single_sigmas
+from estimator.fusion.noise import LearnedNoise
 from estimator.fusion.pairs import UNTOLD_POWER
 from estimator.graph.dense import Array
-from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import wrap
+from estimator.smoothing.arranged import NOISES, Arranged, arrange, scattered, sigmas
 from estimator.smoothing.chosen import choose, kept
 from estimator.smoothing.encounters import candidates
 from estimator.smoothing.ends import FREE, UNIT, Ends, nodes_of, place_ends
 from estimator.smoothing.layout import Layout
-from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals, stretch
+from estimator.smoothing.linear import Readings, add_unsure, apart, jacobians, residuals, stretch
 from estimator.smoothing.obstructed import excess
-
-DROP = len(physics.NOISES) - 1
-NOISES = np.array(physics.NOISES)
 
 
 class Linearised(NamedTuple):
@@ -58,33 +55,18 @@ class Rows:
         self._pairs(layout, since_t)
         self._singles(layout, since_t)
         self._drops(layout, since_t)
-        m, n, d = len(self.pairs), len(self.singles), len(self.drops)
-        self.slab: Integers = np.concatenate([self._slab, self._on.slab, np.repeat(self._by.slab, 3)])
-        self.columns: Integers = np.full((m + n + 3 * d, ANY), -1, dtype=np.int64)
-        self.columns[:m, :6], self.columns[:m, 6:12] = self._a.columns, self._b.columns
-        self.columns[:m, 12:] = self._extra
-        self.columns[m : m + n, :6] = self._on.columns
-        drops = self.columns[m + n :].reshape(d, 3, ANY)
-        drops[:, :, :6], drops[:, :, 6:12] = self._by.columns[:, None], self._crumb.columns[:, None]
-        # An end that does not move depends on three numbers, and those in the border may be another row's.
-        kinds = np.concatenate([self.pairs[:, 1], self.singles[:, 5], np.full(3 * d, DROP)]).astype(np.int64)
-        self.noise: Array = NOISES[kinds]
-        self.nominal: Array = np.concatenate(
-            [self.pairs[:, 5], self.singles[:, 4], np.tile(physics.DROP_SIGMA_M, d)]
-        )
-        rest = n + 3 * d
-        self.source = np.concatenate([self.pairs[:, 6], np.full(rest, -1.0)]).astype(np.int64)
-        self.source[:m][self.pairs[:, 1] >= BEARING] = -1
-        self.alike: Array = np.concatenate([self.pairs[:, 8], np.ones(rest)])
+        ends = (end.stood for end in (self._a, self._b, self._on, self._by, self._crumb))
+        rows = arrange(self.pairs, self.singles, self.drops, self._slab, self._extra, *ends)
+        self._rows: Arranged = rows
+        self.t, self.slab, self.columns, self.noise, self.nominal, self.source, self.alike = rows
         rssi = np.flatnonzero(self.pairs[:, 1] == RSSI)
         self._strongest = np.zeros(len(self.pairs), dtype=bool)
         heard = self.pairs[rssi]
         self._strongest[rssi] = candidates(heard[:, 0], heard[:, 9], heard[:, 4])
-        self.sigma: Array = self.nominal.copy()
         self.shift: Array = np.zeros(len(self.nominal))
-        self._told = self.sigma
+        self.sigma: Array = self.nominal.copy()
+        self._told: Array = self.nominal
         self._white, self._common = self.nominal**2, np.zeros(len(self.nominal))
-        self.t: Array = np.concatenate([self.pairs[:, 0], self.singles[:, 0], np.repeat(self.drops[:, 0], 3)])
         size = layout.length * layout.width
         self._bearings = np.flatnonzero(self.pairs[:, 1] >= BEARING)
         self._readings = Readings(
@@ -145,21 +127,15 @@ class Rows:
 
     def learn(self, noise: dict[str, LearnedNoise]) -> None:
         """Give each reading the noise that has been learned of its technology and its link."""
-        factor, shared = np.ones(len(self.nominal)), np.zeros(len(self.nominal))
-        for number, name in enumerate(self._layout.state.sources):
-            mine = self.source == number
-            learned = noise.get(name, LearnedNoise())
-            factor[mine], shared[mine] = learned.factor, learned.shared
-            if mine.any():
-                self.noise[mine, 0] = learned.outliers(
-                    float(NOISES[RSSI if name.startswith(UNTOLD_POWER) else RANGE][0])
-                )
-        m = len(self.pairs)
-        stays = np.zeros(len(self.nominal))
-        stays[:m][self._inside & (self.pairs[:, 1] == RANGE)] = physics.WALL_M
-        total = (self.nominal * factor) ** 2
-        white = (1.0 - shared) * total
-        common = total - white + stays**2
+        names = self._layout.state.sources
+        known = [(noise.get(name, LearnedNoise()), name.startswith(UNTOLD_POWER)) for name in names]
+        told = [
+            (one.factor, one.shared, one.outliers(NOISES[RSSI if power else RANGE, 0].item()))
+            for one, power in known
+        ]
+        learned = np.array(told).reshape(-1, 3)
+        white, common, outliers = scattered(learned, self._rows, self._readings.kind, self._inside)
+        self.noise[:, 0] = outliers
         self._white, self._common = white, common
         self._tell(white, common)
 
@@ -183,7 +159,7 @@ class Rows:
         self._tell(white, common)
 
     def _tell(self, white: Array, common: Array) -> None:
-        self._told = np.where(self.source >= 0, single_sigmas(white, common, self.alike), self.nominal)
+        self._told = sigmas(white, common, self._rows)
         self.sigma = self._told.copy()
 
     def widen(self, x: Array, jacobian: Array) -> None:
