@@ -9,7 +9,7 @@ from estimator.fusion.motion import walked
 from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.rows import FIELDS, ONE
 from estimator.fusion.silence import wandered_m2
-from estimator.fusion.update import odd_again, tally
+from estimator.fusion.update import odd, tally
 from estimator.fusion.way import End, offset
 from estimator.graph.dense import factorise, inverse
 from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute
@@ -130,7 +130,7 @@ def _warm_filter() -> None:
     found = descend(table, graph.information.copy(), graph.vector, graph.reference, 1)
     told = found.residual, found.predicted, found.good
     tally(table, *told, np.zeros((1, 5)), np.zeros((1, 5)))
-    odd_again(table, np.zeros((1, 5)))
+    odd(table, found.good, np.zeros((1, 5)), False)
     ends, marks = np.zeros((1, len(End._fields))), np.zeros((2, 4))
     offset(ends[0], marks, graph.reference, 0.0)
     technology = np.zeros((1, len(Technology._fields)))

@@ -38,8 +38,7 @@ def update(state: FusionState, table: Array) -> None:
     graph.settle(found.matrix, found.x)
     # Who passes a kicked breadcrumb is held back by it, or hears it too far off again and again: its window
     # is not to wait.
-    odd = (found.good < SAME_PLACE) & (table[:, KIND] == RANGE)
-    if (found.doubted and odd.any()) or odd_again(table[odd], state.links.table):
+    if odd(table, found.good, state.links.table, found.doubted):
         state.suspected = True
     _learn(state, table, found)
 
@@ -51,41 +50,41 @@ def _descend(graph: Kirchhoff, table: Array) -> Found:
 
 def bend_m(graph: Kirchhoff, moved: Array) -> float:
     """How far an update has bent what is linearised: the largest turn of a unit, at arm's length (m)."""
-    farthest = 0.0
-    for variable, row in graph.starts.items():
-        if variable.kind == "unit":
-            farthest = max(farthest, LEVER_M * abs(float(moved[row])))
-    return farthest
+    turns = [moved.item(row) for (kind, _, _), row in graph.starts.items() if kind == "unit"]
+    return LEVER_M * max(map(abs, turns), default=0.0)
 
 
 def _learn(state: FusionState, table: Array, found: Found) -> None:
     """M-step for the noise of each technology: what good readings are off, and how unsure that is itself."""
-    state.count("outlier", int(np.count_nonzero(found.good < 0.5)))
     sums = np.zeros((len(state.sources), 5))
-    tally(table, found.residual, found.predicted, found.good, state.links.table, sums)
+    outliers = tally(table, found.residual, found.predicted, found.good, state.links.table, sums)
+    state.count("outlier", outliers)
     for source, told in zip(state.sources, sums.tolist(), strict=True):
         if told[4] > 0.0:
             state.noise[source] = state.learned(source).with_errors(*told)
 
 
 @njit(cache=True, error_model="numpy")
-def odd_again(table: Array, links: Array) -> bool:
-    """Whether the reading before one of some outliers, on the same link, was an outlier as well.
+def odd(table: Array, good: Array, links: Array, doubted: bool) -> bool:
+    """Whether a range is an outlier, and the reading before it on its link was one as well.
 
     Args:
-        table: of the outliers, see `rows.Row`.
+        table: of m readings, see `rows.Row`.
+        good: probability that each has the good noise, m.
         links: the newest reading on each link, see `links`; its error is that of the one before.
+        doubted: one outlier is enough.
     """
     for r in range(len(table)):
-        link = int(table[r, LINK])
-        if link >= 0 and links[link, KEPT] > 0.0 and np.isnan(links[link, ERROR]):
-            return True
+        if good[r] < SAME_PLACE and table[r, KIND] == RANGE:
+            link = int(table[r, LINK])
+            if doubted or (link >= 0 and links[link, KEPT] > 0.0 and np.isnan(links[link, ERROR])):
+                return True
     return False
 
 
 @njit(cache=True, error_model="numpy")
-def tally(table: Array, residual: Array, predicted: Array, good: Array, links: Array, sums: Array) -> None:
-    """Sum up what readings tell of the noise of their technologies.
+def tally(table: Array, residual: Array, predicted: Array, good: Array, links: Array, sums: Array) -> int:
+    """Sum up what readings tell of the noise of their technologies, and count the outliers among them.
 
     Args:
         table: of m readings.
@@ -96,7 +95,9 @@ def tally(table: Array, residual: Array, predicted: Array, good: Array, links: A
         sums: takes count, squares, pairs, products and seen of each technology, as `LearnedNoise.with_errors`
             does.
     """
+    outliers = 0
     for r in range(len(table)):
+        outliers += good[r] < SAME_PLACE
         source, link = int(table[r, SOURCE]), int(table[r, LINK])
         if source < 0:
             continue
@@ -112,3 +113,4 @@ def tally(table: Array, residual: Array, predicted: Array, good: Array, links: A
             sums[source, 2] += good[r]
             sums[source, 3] += good[r] * (error * links[link, ERROR] - unsure / nominal**2)
         links[link, ERROR] = error if good[r] > SAME_PLACE else np.nan
+    return outliers

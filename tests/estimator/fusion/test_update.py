@@ -5,7 +5,7 @@ import pytest
 
 from estimator.fusion.links import ERROR, KEPT
 from estimator.fusion.rows import FIELDS, LINK, NOMINAL, SIGMA, SOURCE
-from estimator.fusion.update import odd_again, tally
+from estimator.fusion.update import odd, tally
 
 
 def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_link() -> None:
@@ -45,5 +45,8 @@ def test_an_outlier_is_told_from_two_in_a_row_on_one_link(kept: float, error: fl
     table, links = np.zeros((2, FIELDS)), np.zeros((1, 5))
     table[:, LINK] = -1, 0
     links[0, KEPT], links[0, ERROR] = kept, error
-    assert odd_again(table, links) == again
-    assert not odd_again(table[:0], links)
+    bad, good = np.array([0.1, 0.1]), np.array([0.9, 0.9])
+    assert odd(table, bad, links, doubted=False) == again
+    assert odd(table, bad, links, doubted=True)
+    assert not odd(table, good, links, doubted=True)
+    assert not odd(table[:0], good[:0], links, doubted=True)
