@@ -47,7 +47,8 @@ def cholesky(matrix: Array) -> bool:
 def take_rows(own: Array, shares: Array, matrix: Array, top: int, left: int) -> None:
     """Take shares of a matrix's rows off another row, one after the other.
 
-    Four at a time, so that it is read and written less often.
+    Four at a time, so that it is read and written less often. Put where it is called: a call would count its
+    arrays, which takes longer than a short row.
 
     Args:
         own: n, changed.

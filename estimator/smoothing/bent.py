@@ -8,7 +8,7 @@ from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.range import range_slope
 from estimator.measurements.rssi import ANTENNA_M, rssi_slope
-from estimator.smoothing.ends import place_end
+from estimator.smoothing.ends import faced, place_end
 from estimator.smoothing.linear import Readings
 from estimator.smoothing.walks import PLACES, STATES
 
@@ -56,13 +56,14 @@ def add_bends(
     width, corners = diagonal.shape[1], corner.reshape(1, *corner.shape)
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
+    numbers = faced(x, ends_a, ends_b)
     for i in chosen:
         kind = kinds[i]
         if kind > RSSI:
             continue
         by_a[:], by_b[:] = 0.0, 0.0
-        place_end(ends_a, i, x, a, by_a)
-        place_end(ends_b, i, x, b, by_b)
+        place_end(ends_a, i, numbers, a, by_a)
+        place_end(ends_b, i, numbers, b, by_b)
         e, n, u = a[0] - b[0], a[1] - b[1], a[2] - b[2]
         level, squared = e * e + n * n, e * e + n * n + u * u
         if level < NOWHERE_M2:
@@ -201,6 +202,8 @@ def add_turned(
     targets: Array, at: int, first: int, bend: Array, turned: Array, pulled: Array, both: Array
 ) -> None:
     """Add what the block of a moving end has besides its place: B T, its transpose, and Tᵀ B T.
+
+    Put where it is called, see `ends.place_end`.
 
     Args:
         targets: of the keyframes, k × n × n, changed.

@@ -83,21 +83,46 @@ class Places(NamedTuple):
 
 
 @njit(cache=True)
+def faced(x: Array, ends: Table, others: Table) -> Array:
+    """An estimate's numbers, and of the headings of ends their cosines and sines, × 3.
+
+    Many readings are made soon after the same keyframe: each angle is asked once.
+
+    Args:
+        x: the estimate, flat.
+        ends: ends of readings.
+        others: other ones.
+    """
+    found = np.full((len(x), 3), np.nan)
+    for i in range(len(x)):
+        found[i, 0] = x[i]
+    for kinds, at in ((ends.kind, ends.at), (others.kind, others.at)):
+        for i in range(len(kinds)):
+            heading = at[i, 3]
+            if kinds[i] == UNIT and np.isnan(found[heading, 1]):
+                found[heading, 1], found[heading, 2] = np.cos(x[heading]), np.sin(x[heading])
+    return found
+
+
+@njit(cache=True, forceinline=True)
 def place_end(ends: Table, i: int, x: Array, place: Array, turned: Array) -> None:
-    """Where one end is at an estimate x, flat.
+    """Where one end is at an estimate.
+
+    Put where it is called: a call would count each of its arrays, which takes longer than all of the rest.
 
     Args:
         ends: the table that it is in.
         i: its row.
-        x: the estimate.
+        x: the estimate, see `faced`.
         place: takes its position, 3 (m).
         turned: takes the derivatives by the last three columns, 3 × 3; zeros before.
     """
     kind, at = ends.kind[i], ends.at[i]
     for c in range(3):
-        place[c] = x[at[c]] if kind in (STANDING, UNIT, FREE) else ends.fixed_m[i, c]
+        place[c] = x[at[c], 0] if kind in (STANDING, UNIT, FREE) else ends.fixed_m[i, c]
     if kind == UNIT:
-        led = lead(x[at[3]], x[at[4]], 1.0 + x[at[5]], ends.delta_m[i], ends.moment[i])
+        cosine, sine, bias, scale = x[at[3], 1], x[at[3], 2], x[at[4], 0], 1.0 + x[at[5], 0]
+        led = lead(cosine, sine, bias, scale, ends.delta_m[i], ends.moment[i])
         place[0] += led.east
         place[1] += led.north
         place[2] += led.up
@@ -106,17 +131,17 @@ def place_end(ends: Table, i: int, x: Array, place: Array, turned: Array) -> Non
         turned[0, 2], turned[1, 2] = led.by_scale_e, led.by_scale_n
     elif kind == FREE:
         for c in range(3):
-            place[c] += x[at[3 + c]] * ends.duration_s[i]
+            place[c] += x[at[3 + c], 0] * ends.duration_s[i]
             turned[c, c] = ends.duration_s[i]
 
 
 @njit(cache=True)
 def place_ends(ends: Table, x: Array) -> Places:
     """Where m ends are at an estimate x, flat."""
-    m = len(ends.kind)
+    m, numbers = len(ends.kind), faced(x, ends, ends)
     place, turned = np.empty((m, 3)), np.zeros((m, 3, 3))
     for i in range(m):
-        place_end(ends, i, x, place[i], turned[i])
+        place_end(ends, i, numbers, place[i], turned[i])
     return Places(place, turned)
 
 

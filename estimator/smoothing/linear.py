@@ -14,7 +14,7 @@ from estimator.measurements.bearing import bearing_at
 from estimator.measurements.range import range_at
 from estimator.measurements.rssi import rssi_at
 from estimator.smoothing.encounters import near_dbm
-from estimator.smoothing.ends import FIXED, UNIT, Table, place_end, place_ends
+from estimator.smoothing.ends import FIXED, UNIT, Table, faced, place_end, place_ends
 
 ANY = 14
 """Numbers that one row depends on at most: two ends of six, two of a technology."""
@@ -105,10 +105,11 @@ def residuals(readings: Readings, x: Array) -> Array:
     a, b, turned = np.empty(3), np.empty(3), np.zeros((3, 3))
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
+    numbers = faced(x, ends_a, ends_b)
     value, constants = readings.value, readings.constant
     for i in range(m):
-        place_end(ends_a, i, x, a, turned)
-        place_end(ends_b, i, x, b, turned)
+        place_end(ends_a, i, numbers, a, turned)
+        place_end(ends_b, i, numbers, b, turned)
         constant = counted_from(kinds[i], constants[i], ends_a, i, x)
         seen = see(kinds[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
         found[i] = value[i] - seen.predicted
@@ -132,12 +133,13 @@ def jacobians(readings: Readings, x: Array) -> Array:
     a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
     slope = np.empty(3)
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
+    numbers = faced(x, ends_a, ends_b)
     constants = readings.constant
     for i in range(m):
         kind = kinds[i]
         by_a[:], by_b[:] = 0.0, 0.0
-        place_end(ends_a, i, x, a, by_a)
-        place_end(ends_b, i, x, b, by_b)
+        place_end(ends_a, i, numbers, a, by_a)
+        place_end(ends_b, i, numbers, b, by_b)
         constant = counted_from(kind, constants[i], ends_a, i, x)
         seen = see(kind, constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
         if ends_a.kind[i] != FIXED:
@@ -173,9 +175,10 @@ def apart(readings: Readings, x: Array) -> Array:
     m = len(readings.kind)
     found, a, b, turned = np.empty((m, 3)), np.empty(3), np.empty(3), np.zeros((3, 3))
     ends_a, ends_b = readings.a, readings.b
+    numbers = faced(x, ends_a, ends_b)
     for i in range(m):
-        place_end(ends_a, i, x, a, turned)
-        place_end(ends_b, i, x, b, turned)
+        place_end(ends_a, i, numbers, a, turned)
+        place_end(ends_b, i, numbers, b, turned)
         for c in range(3):
             found[i, c] = a[c] - b[c]
     return found

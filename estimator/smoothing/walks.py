@@ -49,12 +49,11 @@ class Led(NamedTuple):
 
 
 @njit(cache=True)
-def lead(psi: float, bias: float, scale: float, delta_m: Array, moment: Array) -> Led:
+def lead(cosine: float, sine: float, bias: float, scale: float, delta_m: Array, moment: Array) -> Led:
     """What is s Rz(ψ) (Δ + β J M) of one displacement Δ (3) with its first moment M (3), and its slopes.
 
     Heights are not scaled: see `measurements.displacement.move`.
     """
-    cosine, sine = np.cos(psi), np.sin(psi)
     bent_e, bent_n = delta_m[0] - bias * moment[1], delta_m[1] + bias * moment[0]
     east, north = cosine * bent_e - sine * bent_n, sine * bent_e + cosine * bent_n
     return Led(
@@ -76,7 +75,8 @@ def led_by(before: Array, delta_m: Array, moment: Array, durations_s: Array) -> 
     count = len(before)
     after, transition = before.copy(), np.zeros((count, STATES, STATES))
     for i in range(count):
-        led = lead(before[i, 3], before[i, 4], 1.0 + before[i, 5], delta_m[i], moment[i])
+        cosine, sine = np.cos(before[i, 3]), np.sin(before[i, 3])
+        led = lead(cosine, sine, before[i, 4], 1.0 + before[i, 5], delta_m[i], moment[i])
         after[i, 0] += led.east
         after[i, 1] += led.north
         after[i, 2] += led.up
@@ -101,7 +101,8 @@ def reckon(states: Array, between: Array, durations_s: Array, known: int) -> Non
         known: the last keyframe that is known.
     """
     for k in range(known, len(durations_s)):
-        led = lead(states[k, 3], states[k, 4], 1.0 + states[k, 5], between[k, :3], between[k, 3:6])
+        cosine, sine = np.cos(states[k, 3]), np.sin(states[k, 3])
+        led = lead(cosine, sine, states[k, 4], 1.0 + states[k, 5], between[k, :3], between[k, 3:6])
         states[k + 1] = states[k]
         states[k + 1, 0] += led.east
         states[k + 1, 1] += led.north
