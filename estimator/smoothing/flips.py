@@ -180,6 +180,8 @@ def loose_steps(problem: Problem, solved: Solved, index: int) -> NDArray[np.bool
         found[walk.first : walk.last] = True
         return found
     found[walk.first : walk.last] = solved.motions[index].noise[:, 0, 0] > LOOSE_M2
+    if not found.any():
+        return found
     turns = np.flatnonzero(np.diff(found, prepend=False, append=False))
     for first, last in zip(turns[::2].tolist(), turns[1::2].tolist(), strict=True):
         found[first:last] = times[last] - times[first] >= SILENT_S
