@@ -1,4 +1,4 @@
-"""How the interpreter is set for a process that serves requests."""
+"""How the interpreter is set for a process that stays: the web process and the estimator worker."""
 
 import gc
 
@@ -10,7 +10,8 @@ def tune_for_serving() -> None:
     """Set the collector once all modules are loaded and the application stands.
 
     What has been made so far is never collected, so that the collector need not look at it: with FastAPI's
-    routes and models it took a third of the time of a small batch.
+    routes and models it took a third of the time of a small batch, and the compiler's objects, which lie in
+    the worker, let the tracker wait for a tenth of a second every few hundred keyframes.
     """
     gc.collect()
     gc.freeze()

@@ -10,6 +10,7 @@ from backend.coordination.base import Answer, Query
 from backend.coordination.lease import RENEW_S, Leases
 from backend.coordination.worker_link import WorkerLink
 from backend.errors import Unavailable
+from backend.interpreter import tune_for_serving
 from backend.log.base import StaleEpoch
 from backend.log.derived import SqlDerivedWriter
 from backend.log.engine import make_engine, writing
@@ -73,6 +74,7 @@ class Worker:
         self._link.start()
         # The estimator thread takes incidents up only after this: its compiled loops are loaded, or made.
         self._compute.submit(warm_up)
+        self._compute.submit(tune_for_serving)
         chores = [asyncio.create_task(chore()) for chore in (self._poll, self._renew, self._listen)]
         stopped = asyncio.create_task(self._stop.wait())
         # A chore never ends by itself: if one does, it is by a defect, and the supervisor starts us again.
