@@ -7,6 +7,7 @@ from estimator.fusion.free import free_motion
 from estimator.fusion.modes import Sought, find_modes
 from estimator.fusion.motion import walked
 from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
+from estimator.fusion.report import shown
 from estimator.fusion.rows import FIELDS, ONE
 from estimator.fusion.silence import wandered_m2
 from estimator.fusion.update import odd, tally
@@ -33,7 +34,7 @@ from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobia
 from estimator.smoothing.moved import ask
 from estimator.smoothing.obstructed import excess
 from estimator.smoothing.slips import gains, unsure
-from estimator.smoothing.turned import change_pairs, moved_from, turn_between
+from estimator.smoothing.turned import change_pairs, moved_from, turn_between, turning
 from estimator.smoothing.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
 from estimator.smoothing.ways import Laid, Way
 
@@ -56,7 +57,9 @@ def warm_up() -> None:
     weigh(one, one, one, *strided)
     mixture_cost(one, one, *strided)
     cauchy_cost(one, 1.0)
-    total_cost(np.zeros(0, dtype=np.int64), one, one, *strided)
+    for noise in (strided, strided.copy()):
+        # Of one reading alone the columns of a table lie as those of an array do.
+        total_cost(np.zeros(0, dtype=np.int64), one, one, *noise)
     prior_cost(one, np.zeros(1, dtype=np.intp), one, one)
     find_modes(Sought("range", place, one, one, 0.0, 1.0, np.zeros(2), np.eye(2)))
 
@@ -109,6 +112,7 @@ def _warm_chain() -> None:
     scattered(place, rows, slab, no)
     sigmas(rows.nominal, rows.nominal, rows)
     turned_by = turn_between(place[:, :2], place[:, :2])
+    turning(turned_by)
     moved_from(x, x, pair, pair, place[0, :2], turned_by)
     change_pairs(np.eye(2), one, pair, np.zeros((1, 2, 2)))
     add_bends(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
@@ -121,7 +125,7 @@ def _warm_filter() -> None:
     rows, straight = np.arange(3)[None], np.eye(3)[None]
     graph.advance(rows, graph.reference[rows], straight, straight)
     graph.add_measurements(rows, np.ones((1, 3)), np.ones(1), np.zeros(1))
-    inverse(factorise(graph.information))
+    shown(np.zeros(1, dtype=np.intp), graph.reference, inverse(factorise(graph.information)))
     walked(np.zeros((1, 12)), graph.reference)
     wandered_m2(1.0, 0.0)
     free_motion("responder", 1.0)
