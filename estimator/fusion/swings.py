@@ -14,6 +14,7 @@ from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 
 LEAST_M2 = 1e-6
+"""A place is moved by a millimetre at least: no noise at all is no Kirchhoff matrix."""
 LOOSE_RAD = 0.1
 """What a heading that is better known does beyond the first order is less than a hundredth of the way."""
 
