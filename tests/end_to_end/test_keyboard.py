@@ -29,11 +29,11 @@ def test_the_keys_pause_step_select_and_choose_storeys(
     commander.presses("Space")
     eventually(lambda: commander.mode == "REPLAY")
     eventually(lambda: commander.clock == newest)
-    for _ in range(3):
+    for _ in range(6):
         commander.presses("ArrowLeft")
-    eventually(lambda: seconds(newest) - seconds(commander.clock) == 3)
+    eventually(lambda: seconds(newest) - seconds(commander.clock) == 6)
     commander.presses("ArrowRight")
-    eventually(lambda: seconds(newest) - seconds(commander.clock) == 2)
+    eventually(lambda: seconds(newest) - seconds(commander.clock) == 5)
     commander.presses("Space")
     eventually(lambda: commander.clock == newest, within_s=8)
     commander.presses("b")

@@ -27,13 +27,14 @@ export class Feed {
     this.leave();
     this.source = source;
     source.subscribe({
-      frame: (message) => this.take(message, pictureOf(message)),
-      delta: (message) => {
-        if (this.picture !== null) this.take(message, withDelta(this.picture, message));
+      frame: (message, t) => this.take(message, pictureOf(message), t),
+      delta: (message, t) => {
+        if (this.picture !== null) this.take(message, withDelta(this.picture, message), t);
       },
-      heartbeat: (message) => {
+      heartbeat: (message, t) => {
+        if (t === null) return;
         this.owner.heartbeat(message);
-        this.keepTime(message.t);
+        this.keepTime(t);
       },
       state: (link) => {
         const justLost = link.link === "lost" && this.link.link !== "lost";
@@ -57,9 +58,9 @@ export class Feed {
     this.clock = { t, localMs: performance.now(), rate: this.owner.rate() };
   }
 
-  private take(message: FrameMessage | DeltaMessage, picture: Picture): void {
+  private take(message: FrameMessage | DeltaMessage, picture: Picture, t: number | null): void {
     this.picture = picture;
-    this.keepTime(message.clock_t);
+    if (t !== null) this.keepTime(t);
     this.owner.changed(message);
   }
 }

@@ -52,8 +52,10 @@ export class ReconnectingSource implements Source {
   /** Called when the link has opened, before any message. */
   protected opened(): void {}
 
-  /** Called with each message before the listeners hear it. */
-  protected heard(_message: LiveMessage): void {}
+  /** Incident time by a message of `t` (Unix s), or null: it tells none; called with each. */
+  protected time(t: number): number | null {
+    return t;
+  }
 
   private connect(): void {
     clearTimeout(this.retry);
@@ -67,11 +69,12 @@ export class ReconnectingSource implements Source {
 
   private receive(message: LiveMessage): void {
     this.become({ link: "open", lastWordMs: performance.now(), attempts: 0 });
-    this.heard(message);
+    if (message.type === "error") return;
+    const t = this.time(message.type === "heartbeat" ? message.t : message.clock_t);
     for (const listener of this.listeners) {
-      if (message.type === "frame") listener.frame(message);
-      else if (message.type === "delta") listener.delta(message);
-      else if (message.type === "heartbeat") listener.heartbeat(message);
+      if (message.type === "frame") listener.frame(message, t);
+      else if (message.type === "delta") listener.delta(message, t);
+      else listener.heartbeat(message, t);
     }
   }
 

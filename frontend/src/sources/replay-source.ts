@@ -1,4 +1,4 @@
-import type { LiveMessage } from "../domain/types";
+import { answers, type Sought } from "../domain/seeking";
 import { ReconnectingSource, socketAddress } from "./reconnecting";
 
 export interface ReplayFrom {
@@ -14,6 +14,8 @@ export interface ReplayFrom {
 /** The incident as it was, played from its log; it can be sought, paused and sped up. */
 export class ReplaySource extends ReconnectingSource {
   private readonly at: { t: number; speed: number; paused: boolean };
+  /** What no message has answered yet. */
+  private sought: Sought | null = null;
 
   constructor(incident: string, { begin, at, to, speed, paused }: ReplayFrom) {
     super(() => {
@@ -25,6 +27,7 @@ export class ReplaySource extends ReconnectingSource {
 
   seek(t: number): void {
     this.at.t = t;
+    this.sought = { t, localMs: performance.now() };
     this.send({ seek: t });
   }
 
@@ -42,10 +45,13 @@ export class ReplaySource extends ReconnectingSource {
   protected override opened(): void {
     this.send({ speed: this.at.speed });
     this.send({ pause: this.at.paused });
-    this.send({ seek: this.at.t });
+    this.seek(this.at.t);
   }
 
-  protected override heard(message: LiveMessage): void {
-    if (message.type === "delta") this.at.t = message.clock_t;
+  protected override time(t: number): number | null {
+    if (this.sought !== null && !answers(this.sought, t, performance.now(), this.at.speed)) return null;
+    this.sought = null;
+    this.at.t = t;
+    return t;
   }
 }

@@ -10,10 +10,12 @@ export interface LinkState {
   readonly attempts: number;
 }
 
+/** Each message comes with the incident time that it tells (Unix s), or null: it was on its way when another
+ * was sought. */
 export interface Listener {
-  frame(message: FrameMessage): void;
-  delta(message: DeltaMessage): void;
-  heartbeat(message: HeartbeatMessage): void;
+  frame(message: FrameMessage, t: number | null): void;
+  delta(message: DeltaMessage, t: number | null): void;
+  heartbeat(message: HeartbeatMessage, t: number | null): void;
   state(state: LinkState): void;
 }
 
