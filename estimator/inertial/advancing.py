@@ -1,6 +1,6 @@
 """Samples of a boot, one after the other: a strapdown system that is held by its own standstills.
 
-Each time that the boot stands, its velocity is known to be nearly nil (ZUPT; Foxlin 2005, paper C): an
+Each time that the boot stands, its velocity is known (ZUPT; Foxlin 2005, paper C): an
 extended Kalman filter of its errors then corrects all of them, and with them the step just made. Paper C
 corrects velocities in retrospect along a line; the covariances of the filter do that here.
 """
@@ -48,7 +48,7 @@ def advance(boot: Boot, force: Array, rate: Array, step_s: float) -> int:
         rest(boot, rate[i], step_s)
         boot.loose[SINCE_S] += step_s
         boot.loose[BLOWN_M2PS4] = max(boot.loose[BLOWN_M2PS4], boot.felt[JERKED])
-        sigma_mps = hold(boot, ahead, step_s)
+        sigma_mps = hold(boot, ahead, sample[3:], step_s)
         if not np.isinf(sigma_mps):
             loosen(boot, sigma_mps)
     return len(force)

@@ -1,4 +1,4 @@
-"""How a boot that stands holds its navigation: its velocity is nearly nil, and floors are flat."""
+"""How a boot that stands holds its navigation: its velocity is known, and floors are flat."""
 
 import numpy as np
 from numba import njit
@@ -20,8 +20,8 @@ from estimator.inertial.boot import (
     Boot,
 )
 from estimator.inertial.rotations import azimuth_rad
-from estimator.inertial.stance import ALIKE_S, stance_sigma
-from estimator.inertial.strapdown import correct, mend, stand_still
+from estimator.inertial.stance import ALIKE_S, rolling_mps, stance_sigma
+from estimator.inertial.strapdown import correct, mend, stand
 
 UNHELD_S = 1.0
 """What a boot is moved by while it seems to stand is forgotten in so long: its tilt is not known better."""
@@ -40,16 +40,17 @@ RISE_SIGMA_M = 0.015
 
 
 @njit(cache=True, error_model="numpy")
-def hold(boot: Boot, ahead: Array, step_s: float) -> float:
-    """Hold a boot's velocity against nil where it stands, and its height against that of its last foothold.
+def hold(boot: Boot, ahead: Array, rate: Array, step_s: float) -> float:
+    """Hold a boot that stands: its velocity against how it rolls, its height against its last foothold's.
 
     Args:
         boot: changed in place.
         ahead: its acceleration by this sample, 3 (m/s²).
+        rate: its angular rate by this sample, without its bias, in the sensor's axes, 3 (rad/s).
         step_s: time from the last sample to this one (s).
 
     Returns:
-        How far from nil its velocity may be along each axis (m/s); infinite where it does not stand.
+        How far from that its velocity may be along each axis (m/s); infinite where it does not stand.
     """
     footing = boot.footing
     footing[HELD_S] += step_s
@@ -58,7 +59,7 @@ def hold(boot: Boot, ahead: Array, step_s: float) -> float:
         footing[STOOD] = 1.0 if footing[HELD_S] > STRIDE_S else footing[STOOD] + 1.0
         footing[HELD_S] = 0.0
         error = np.zeros(ERRORS)
-        stand_still(boot.held, error, sigma)
+        stand(boot.held, error, rolling_mps(boot.held.attitude, rate), sigma)
         mend(boot.held, error)
         if footing[STOOD] == FOOTHOLD:
             level_off(boot)

@@ -32,7 +32,7 @@ from estimator.inertial.boot import (
 from estimator.inertial.holding import face, level_off
 from estimator.inertial.rotations import azimuth_rad, turned_about
 from estimator.inertial.stance import ALIKE_S, QUIET
-from estimator.inertial.strapdown import mend, stand_still
+from estimator.inertial.strapdown import mend, stand
 
 QUIET_S, AGAIN_S = 0.2, 0.3
 """What is quiet for so long may rest; nearer to each other, rests have the same error: they count once."""
@@ -92,7 +92,7 @@ def _rest(boot: Boot, sigma_mps: float) -> None:
     back = loose[REJECTED_MPS] == 0.0 or speed_mps < BACK * loose[REJECTED_MPS]
     if back and _squared(free, VELOCITY, free.velocity, sigma_mps) < RESTING:
         error = np.zeros(ERRORS)
-        stand_still(free, error, sigma_mps)
+        stand(free, error, np.zeros(3), sigma_mps)
         mend(free, error)
         apart = apart_m(boot)
         if contradicts(boot) and np.dot(apart, apart) < (CARRIED_MPS * loose[SINCE_S]) ** 2:

@@ -2,8 +2,9 @@
 
 Detectors as SHOE (Skog et al. 2010) hold a sum of forces and rates against a threshold, and each walk wants
 its own. A boot that stands rolls over heel and ball: the unit on it moves with ω × r, r being the hand's
-width to where it touches the ground. So what it rotates by says how fast it can be, and nothing needs to be
-decided: a boot that hardly turns tells its velocity well, and one that swings tells nothing.
+width to where it touches the ground. So what it rotates by says how it moves, and how fast it can be at most,
+and nothing needs to be decided: a boot that hardly turns tells its velocity well, and one that swings tells
+nothing.
 """
 
 import numpy as np
@@ -12,7 +13,7 @@ from numba import njit
 from estimator.graph.dense import Array
 
 LEVER_M = 0.1
-"""From the unit to where the boot stands."""
+"""From where the boot stands to the unit, which is above it: on the instep, or at the ankle."""
 SHAKEN_S = 0.03
 """What is felt beside gravity changes direction several times in so long: times it, it is a speed."""
 STEADY_MPS = 0.005
@@ -68,8 +69,25 @@ def felt_by(felt: Array, force: Array, rate: Array, gravity_mps2: float, step_s:
 
 
 @njit(cache=True, error_model="numpy")
+def rolling_mps(attitude: Array, rate: Array) -> Array:
+    """Velocity of the unit on a boot that rolls over where it stands: ω × r, r pointing up, 3 (m/s).
+
+    A boot rolls forward with each stride. Held against nil, each would be shorter by one or two per cent.
+
+    Args:
+        attitude: from the sensor's axes to those of a frame with z up, 3 × 3.
+        rate: angular rate without its bias, in the sensor's axes, 3 (rad/s).
+    """
+    found = np.zeros(3)
+    for c in range(3):
+        found[0] += LEVER_M * attitude[1, c] * rate[c]
+        found[1] -= LEVER_M * attitude[0, c] * rate[c]
+    return found
+
+
+@njit(cache=True, error_model="numpy")
 def stance_sigma(felt: Array, since_s: float) -> float:
-    """How far a boot's velocity is from nil along each axis (m/s); infinite where it does not stand.
+    """How far off that velocity may be along each axis (m/s); infinite where a boot does not stand.
 
     Args:
         felt: see `felt_by`.

@@ -184,13 +184,14 @@ def mend(boot: Strapdown, error: Array) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def stand_still(boot: Strapdown, error: Array, sigma_mps: float) -> None:
-    """Take in that a boot stands, but for `sigma_mps` along each axis (ZUPT): their errors are independent.
+def stand(boot: Strapdown, error: Array, velocity_mps: Array, sigma_mps: float) -> None:
+    """Take in what the velocity of a boot that stands is (ZUPT): the errors of its axes are independent.
 
     Args:
         boot: its covariance is changed in place.
         error: takes by what it is to be corrected, 18.
-        sigma_mps: how fast it may be all the same (m/s).
+        velocity_mps: as fast it is, 3 (m/s).
+        sigma_mps: how far off that may be along each axis (m/s).
     """
     for axis in range(3):
-        correct(boot.covariance, error, VELOCITY + axis, -boot.velocity[axis], sigma_mps)
+        correct(boot.covariance, error, VELOCITY + axis, velocity_mps[axis] - boot.velocity[axis], sigma_mps)

@@ -15,6 +15,8 @@ HALF_S = 0.5 * STEP_S
 STANCE_S, SWING_S = 0.6, 0.5
 STEEPEST_RAD = 0.7
 LIFTED_M = 0.12
+HEEL_RAD, BALL_RAD = -0.15, 0.25
+"""Pitch of a boot that comes down, and of one that leaves the ground."""
 
 
 class Stride(NamedTuple):
@@ -83,6 +85,27 @@ def walked(
     fine = _way(strides, heading_rad, rests_s)
     attitudes = Rotation.from_euler("ZY", fine[:, 3:5]) * (mounted or Rotation.identity())
     return felt(fine[:, :3], attitudes, start_t, float(fine[-1, 3]))
+
+
+def rolled(strides: int, above_m: float) -> Gait:
+    """A walk straight ahead of a boot that rolls where it stands, from heel to ball; its unit is above that.
+
+    Args:
+        strides: how many.
+        above_m: height of the unit above where the boot touches the ground.
+    """
+    fine = _way([Stride()] * strides, 0.0, 2.0)
+    swings, stands = (np.arange(1, round(s / HALF_S) + 1) / round(s / HALF_S) for s in (SWING_S, STANCE_S))
+    swung = BALL_RAD + (HEEL_RAD - BALL_RAD) * smooth(swings)
+    rolls = HEEL_RAD + (BALL_RAD - HEEL_RAD) * smooth(stands)
+    rest = round(2.0 / HALF_S)
+    pitch = np.tile(np.concatenate([swung, rolls]), strides)
+    # It begins and ends flat on the ground.
+    pitch[: len(swings)] = HEEL_RAD * smooth(swings)
+    pitch[-len(stands) :] = HEEL_RAD * (1.0 - smooth(stands))
+    fine[rest:-rest, 4] += pitch
+    attitudes = Rotation.from_euler("ZY", fine[:, 3:5])
+    return felt(fine[:, :3] + attitudes.apply([0.0, 0.0, above_m]), attitudes, 0.0, 0.0)
 
 
 def felt(places: Array, attitudes: Rotation, start_t: float, heading_rad: float) -> Gait:

@@ -16,7 +16,7 @@ from estimator.inertial.record import navigation_of, record_of
 from estimator.inertial.samples import PIECE_S, pieces
 from estimator.inertial.strapdown import ATTITUDE_WALK
 from estimator.measurements.imu import Imu
-from tests.estimator.inertial.gait import AROUND, STEP_S, Stride, walked
+from tests.estimator.inertial.gait import AROUND, STEP_S, Stride, rolled, walked
 from tests.estimator.inertial.led import followed, true_m, unsure_m, where
 
 GAIT = walked(AROUND, start_t=50.0).noisy(np.random.default_rng(1))
@@ -183,6 +183,13 @@ def test_who_runs_is_followed_however_his_samples_are_cut(each: int) -> None:
     found, texts = followed(gait.readings(each))
     assert texts == []
     assert np.linalg.norm(where(found)[:2] - gait.place_m[-1][:2]) < 0.05 * 52.0
+
+
+@pytest.mark.parametrize("above_m", [0.07, 0.1, 0.13])
+def test_strides_of_a_boot_that_rolls_from_heel_to_ball_are_not_taken_for_shorter(above_m: float) -> None:
+    gait = rolled(20, above_m)
+    found, _ = followed(gait.readings())
+    assert where(found)[0] == pytest.approx(gait.place_m[-1][0], rel=0.006)
 
 
 def test_long_readings_are_folded_in_pieces_of_half_a_second() -> None:

@@ -1,8 +1,18 @@
 """How nearly a boot stands, by what it feels."""
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from estimator.inertial.stance import ALIKE_S, BEFORE, MOST_MPS, STEADY_MPS, felt_by, stance_sigma
+from estimator.inertial.stance import (
+    ALIKE_S,
+    BEFORE,
+    LEVER_M,
+    MOST_MPS,
+    STEADY_MPS,
+    felt_by,
+    rolling_mps,
+    stance_sigma,
+)
 from tests.estimator.inertial.gait import STANCE_S, STEP_S, SWING_S, Stride, walked
 
 
@@ -35,6 +45,17 @@ def test_what_its_speed_can_be_grows_with_what_it_turns_by() -> None:
     told = [sigmas(rest, np.tile([turning, 0.0, 0.0], (100, 1)))[-1] for turning in (0.0, 0.1, 0.5, 1.0)]
     assert told == sorted(told)
     assert told[-1] > 5.0 * told[0]
+
+
+def test_a_unit_on_a_boot_that_rolls_moves_as_its_height_above_the_ground_is_turned() -> None:
+    """Against differences: the boot is turned by a little about where it stands."""
+    chance, short_s = np.random.default_rng(4), 1e-6
+    for _ in range(20):
+        attitude, rate = Rotation.random(random_state=int(chance.integers(1 << 30))), chance.normal(size=3)
+        up = attitude.inv().apply([0.0, 0.0, LEVER_M])
+        later = attitude * Rotation.from_rotvec(rate * short_s)
+        moved = (later.apply(up) - attitude.apply(up)) / short_s
+        np.testing.assert_allclose(rolling_mps(attitude.as_matrix(), rate), moved, atol=1e-5)
 
 
 def test_standstills_near_to_each_other_count_once() -> None:

@@ -17,7 +17,7 @@ from estimator.inertial.strapdown import (
     correct,
     freed,
     mend,
-    stand_still,
+    stand,
 )
 from tests.estimator.inertial.gait import STEP_S, Stride, walked
 
@@ -103,7 +103,7 @@ def test_what_is_told_of_a_state_is_taken_in_as_by_bayes() -> None:
 
 def test_who_stands_has_no_velocity() -> None:
     boot, error = unsure(np.random.default_rng(3)), np.zeros(ERRORS)
-    stand_still(boot, error, 1e-4)
+    stand(boot, error, np.zeros(3), 1e-4)
     mend(boot, error)
     assert np.abs(boot.velocity).max() < 1e-3
     assert np.abs(boot.covariance[VELOCITY:ATTITUDE, VELOCITY:ATTITUDE]).max() < 1e-7
