@@ -35,6 +35,7 @@ def fix(state: FusionState, reading: Position) -> list[Single]:
         return []
     state.count("fused")
     singles, offset = [], offset_of(state, node, reading.t)
+    _tell_heights(state, node.node)
     if node.turned:
         # A fix on the arc would seem to be far off its tangent.
         unbend(state, node)
@@ -70,9 +71,15 @@ def height(state: FusionState, reading: Altitude | Pressure) -> list[Single]:
         state.nodes[node.node] = replace(node, pressure_t=reading.t)
     state.count("fused")
     sigma, noise = max(sigma, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE
+    _tell_heights(state, node.node)
     _enter_single(state, node, reading.t, 2, up, sigma, noise)
     up -= offset_of(state, node, reading.t)[2]
     return [Single(node.position, 2, up, sigma, noise)]
+
+
+def _tell_heights(state: FusionState, name: str) -> None:
+    if not state.nodes[name].heights:
+        state.nodes[name] = replace(state.nodes[name], heights=True)
 
 
 def _enter_single(

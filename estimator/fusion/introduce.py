@@ -181,7 +181,8 @@ def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float)
         # What was measured to it before was measured to another place, or to a hand that carried it.
         node = replace(node, mode="undecided", index=state.number(name))
     wide = (NO_PRIOR_SIGMA_M,) * 3
-    place(state, replace(node, otherwise=by.otherwise), t, where_m, wide)
+    node = replace(node, otherwise=by.otherwise, unseen_up_m2=by.doubt_up_m2)
+    place(state, node, t, where_m, wide)
     state.ledger.add("drops", t, node.index, by.index)
     start = state.graph.rows(state.nodes[name].position).start
     information = np.array([s**-2 for s in physics.DROP_SIGMA_M])
@@ -211,6 +212,7 @@ def retire(state: FusionState, node: NodeState, t: float) -> None:
         own = covariance[rows, rows] + doubt
         loose, plane = loose_headings(state, covariance), slice(rows.start, rows.start + 2)
         own[:2, :2] += swung_m2(covariance[None, plane, loose], covariance[loose, loose])[0]
+        own[2, 2] += node.doubt_up_m2
         covariance_m2 = upper_triangle(own)
         owned = [v for v in (node.position, node.velocity, node.unit) if v in state.graph]
         state.graph.delete_nodes(owned)

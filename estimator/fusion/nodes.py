@@ -39,6 +39,9 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         still: headings that its unit has reported since it stands still.
         way_m: length of its way so far.
         pressure_t: epoch of its newest fused pressure.
+        heights: heights have been told of it, by a fix, an altimeter or an air pressure.
+        level: its unit has never reported a change of height.
+        unseen_up_m2: variance of its height by the stairs that such a unit does not see.
         turned: its unit's frame may be turned by any angle: every window is tried with several.
         bias_told: what readings say of its unit's gyro bias without its prior.
         otherwise: where it may be instead, by what readings tell as well.
@@ -63,6 +66,9 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     still: Standing | None = None
     way_m: float = 0.0
     pressure_t: float | None = None
+    heights: bool = False
+    level: bool = True
+    unseen_up_m2: float = 0.0
     walk_factors: tuple[float, float] = (1.0, 1.0)
     turned: bool = False
     bias_told: Told = UNTOLD
@@ -87,6 +93,11 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     def decided(self) -> bool:
         """Whether readings can be held against its position."""
         return self.mode in ("fixed", "static", "unit", "free")
+
+    @property
+    def doubt_up_m2(self) -> float:
+        """What its height is doubted by beside the Kirchhoff matrix: where nothing tells heights (m²)."""
+        return 0.0 if self.heights else self.unseen_up_m2
 
     @property
     def moving(self) -> bool:

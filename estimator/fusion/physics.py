@@ -27,6 +27,9 @@ WALK_M_PER_ROOT_M = 0.035
 """Random error of a step, in any direction: 3.5 cm after 1 m, growing with the root of the way."""
 STAND_M_PER_ROOT_S = 0.005
 DISPLACEMENT_FLOOR_M = 0.005
+CLIMB_M_PER_ROOT_M = 0.3
+"""A unit that always reports no change of height measures none: its bearer may have taken a stair, three
+metres up or down in a hundred metres of way."""
 HEADING_WALK_RAD_PER_ROOT_M = radians(0.25)
 """A boot turns a little against the unit's frame with every step: a few tenths of a degree."""
 GYRO_WALK_RAD_PER_ROOT_S = radians(0.03)

@@ -74,6 +74,7 @@ def _estimate(
     if node.otherwise:
         doubt = doubt_m2(node.otherwise, np.array([east, north]))
         ee, en, nn = ee + float(doubt[0, 0]), en + float(doubt[0, 1]), nn + float(doubt[1, 1])
+    uu += node.doubt_up_m2
     heading, sigma = _heading(state, node, covariance) if node.moving else (None, None)
     return NodeEstimate(
         node=node.node,
@@ -130,6 +131,7 @@ def relative(state: FusionState, covariance: Array, a: str, b: str) -> Relative 
     total += across @ selector.T
     loose = loose_headings(state, covariance)
     total[:2, :2] += swung_m2(across[None, :2, loose], covariance[loose, loose])[0]
+    total[2, 2] += sum(node.doubt_up_m2 for node in ends)
     held = [node.otherwise if node.place_m is None else () for node in ends]
     total += doubt_between_m2(held[0], places[0][:2], held[1], places[1][:2])
     return Relative(delta_m=tuple_of(places[1] - places[0]), covariance_m2=upper_triangle(total))

@@ -19,7 +19,7 @@ from estimator.measurements.displacement import Displacement
 TRAIL_S = 4.0
 FIRST_DURATION_S = 1.0
 WALK_M2_PER_M, STAND_M2_PER_S = physics.WALK_M_PER_ROOT_M**2, physics.STAND_M_PER_ROOT_S**2
-FLOOR_M2 = physics.DISPLACEMENT_FLOOR_M**2
+FLOOR_M2, CLIMB_M2_PER_M = physics.DISPLACEMENT_FLOOR_M**2, physics.CLIMB_M_PER_ROOT_M**2
 TURN_RAD2_PER_M = physics.HEADING_WALK_RAD_PER_ROOT_M**2
 TURN_RAD2_PER_S = physics.GYRO_WALK_RAD_PER_ROOT_S**2
 BIAS_PER_S, SCALE_PER_S = physics.BIAS_WALK_RADPS_PER_ROOT_S**2, physics.SCALE_WALK_PER_ROOT_S**2
@@ -66,6 +66,7 @@ class Step:
         self._pose_t, self._unit_t = node.pose_t, node.unit_t
         self._heading_rad, self._speed_mps = node.unit_heading_rad, node.speed_mps
         self._still, self._way_m = node.still, node.way_m
+        self._level, self._unseen_up_m2 = node.level, node.unseen_up_m2
         self._marks: list[Mark] = list(node.trail or ((node.pose_t, 0.0, 0.0, 0.0),))
         self.taken = False
 
@@ -98,6 +99,7 @@ class Step:
                 turn = Single(self.node.unit, 1, 0.0, reading.rested_radps, physics.TURN_NOISE)
         else:
             up += (physics.SCALE_SIGMA * u) ** 2
+        up += self._climb_m2(reading, length)
         noise = walk_noise((across, across, up), reading, length, duration)
         if own > 0.0:
             self._speed_mps = math.hypot(e, n) / own
@@ -111,6 +113,21 @@ class Step:
         self.duration_s += duration
         self.noise = sum_of(self.noise, noise)
         return Increment(pose_t, (e, n, u), noise, turn, too_fast)
+
+    def _climb_m2(self, reading: Displacement, length: float) -> float:
+        """What a displacement's height is unsure by because its unit measures none (m²).
+
+        Where nothing else tells heights, the Kirchhoff matrix keeps to the plane, for the unit may yet show
+        that it measures them; what it may have missed is told beside (estimation.md, point 8).
+        """
+        if reading.delta_m[2] != 0.0 or isinstance(reading, Led):
+            self._level, self._unseen_up_m2 = False, 0.0
+        if self._level:
+            self._unseen_up_m2 += CLIMB_M2_PER_M * length
+        if not self.node.heights:
+            return 0.0
+        climb_m2, self._unseen_up_m2 = self._unseen_up_m2, 0.0
+        return climb_m2
 
     def _stand(self, reading: Displacement, still: bool) -> Single | None:
         """Go on standing, or stop; the gyro bias that this tells."""
@@ -142,6 +159,8 @@ class Step:
             trail=tuple(marks[max(oldest - 1, 0) :]),
             still=self._still,
             way_m=self._way_m,
+            level=self._level,
+            unseen_up_m2=self._unseen_up_m2,
         )
 
 

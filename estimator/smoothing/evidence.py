@@ -77,6 +77,7 @@ def explain(
     doubt = doubt_m2(otherwise(layout, solved.x, modes).get(name, ()), solved.x[start : start + 2])
     across = told[:, :2]
     total = float(np.trace(covariance[:2, :2]))
+    doubt[2, 2] += node.doubt_up_m2
     doubt[:2, :2] += swung(told[:, 3:], headings, start)
     rows = problem.rows
     flat = _flat(layout, rows)

@@ -109,7 +109,7 @@ def noise_scores(motion: Motion, unsure_of: Array) -> Array:
         by_turn[0, 3] = by_turn[3, 0] = 0.5 * east * turn
         by_turn[1, 3] = by_turn[3, 1] = 0.5 * north * turn
         by_turn[3, 3] = turn
-        for c in range(3):
+        for c in range(2):
             by_place[c, c] = noise[c, c] - by_turn[c, c]
         for r in range(PARTS):
             half[r] = 0.0

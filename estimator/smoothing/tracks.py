@@ -39,7 +39,9 @@ def tracks(
         number, name = int(row[1]), layout.state.owners[int(row[1])]
         start = layout.stands[number]
         place = tuple_of(x[size + start : size + start + 3])
-        covariance = upper_triangle(border[start : start + 3, start : start + 3])
+        told = border[start : start + 3, start : start + 3].copy()
+        told[2, 2] += layout.state.nodes[name].doubt_up_m2
+        covariance = upper_triangle(told)
         first, last = lifetimes[name]
         since = max(drops.get(number, first), first) if name in found or number in drops else first
         came_t, left_t = lay.get(number, (-math.inf, math.inf))
@@ -125,6 +127,7 @@ def _walked(
     if walk.way is not None:
         bridged = walk.way.bridged(seconds)
         covariance[:, range(3), range(3)] += bridged[:, None] * np.array([1.0, 1.0, 0.1])
+        covariance[:, 2, 2] += walk.node.doubt_up_m2 * walk.way.gone(seconds)
     return [
         TrackPoint(t=t, position_m=tuple_of(p), covariance_m2=upper_triangle(c))
         for t, p, c in zip(seconds.tolist(), places, covariance, strict=True)

@@ -13,6 +13,8 @@ LONG_STEP_S, BRIDGED_M_PER_ROOT_S = 4.0, 1.0
 """Nobody's way over a longer time is a straight line, but a random walk between its ends."""
 SUMS = 12
 """Displacement 3, its first moment 3, variances 5, length."""
+LENGTH = 11
+"""Which of them its length is."""
 LAID = 8
 """What readings need of them."""
 
@@ -61,6 +63,11 @@ class Way:
         since, until = np.ascontiguousarray(since), np.ascontiguousarray(until)
         return np.asarray(sums_between(self.begin_t, self._marks, self._sums, since, until))
 
+    def gone(self, t: Array) -> Array:
+        """Share of its whole length that it has gone at `t`, m."""
+        begins = np.full(len(t), self.begin_t)
+        return np.asarray(self.between(begins, t)[:, LENGTH] / max(float(self._sums[-1, LENGTH]), 1e-9))
+
     def lay_out(self, mine: int, numbers: Integers, since: Array, until: Array, to: Laid) -> None:
         """Put what lies between epochs where it belongs, of those of m ends that are this node's.
 
@@ -81,7 +88,7 @@ def summed(begin_t: float, steps: Array, by_place: float, by_turn: float) -> tup
     Args:
         begin_t: epoch at which it begins (s).
         steps: the ledger's rows, m × 12, in order of epoch.
-        by_place: learned variance of position over the assumed one.
+        by_place: learned variance of position, across, over the assumed one.
         by_turn: that of heading.
     """
     m = len(steps)
@@ -93,9 +100,9 @@ def summed(begin_t: float, steps: Array, by_place: float, by_turn: float) -> tup
         factor = by_place if steps[i, 11] == 0.0 else 1.0
         for c in range(3):
             each[c], each[3 + c] = steps[i, 3 + c], steps[i, 3 + c] * middle
-        each[6], each[7], each[8] = steps[i, 6] * factor, steps[i, 7] * factor, steps[i, 8] * by_turn
+        each[6], each[7], each[8] = steps[i, 6] * factor, steps[i, 7], steps[i, 8] * by_turn
         each[9], each[10] = steps[i, 9], steps[i, 10]
-        each[11] = np.sqrt(steps[i, 3] * steps[i, 3] + steps[i, 4] * steps[i, 4])
+        each[LENGTH] = np.sqrt(steps[i, 3] * steps[i, 3] + steps[i, 4] * steps[i, 4])
         for c in range(SUMS):
             sums[i + 1, c] = sums[i, c] + each[c]
     return marks, sums
