@@ -181,7 +181,7 @@ def _solutions(
     effort: Effort,
 ) -> list[Tried]:
     """The solutions that images of a way lead to, that which is to be shown first."""
-    asked = Asked(problem.layout, index, effort.whole)
+    asked = Asked(problem, index, effort.whole)
     found = [Tried(solved, Flip(0, Image()))]
     tried: list[Begun] = []
     for flip in begun:
@@ -195,7 +195,7 @@ def _solutions(
         if there is None:
             continue
         new = Tried(there, flip)
-        same = next((k for k, one in enumerate(found) if asked.same(one.begun, new.begun)), None)
+        same = next((k for k, one in enumerate(found) if asked.same(one, new)), None)
         if same is None:
             found.append(new)
         elif there.cost < found[same].solved.cost - CLEARER:

@@ -63,10 +63,13 @@ def otherwise(layout: Layout, x: Array, modes: Iterable[Mode]) -> dict[str, tupl
         told = []
         for mode in modes:
             # Who has changed sides with others may be on the line just now, and leave it elsewhere.
+            image = mode.images.get(number, Image())
             goes_on = number in mode.images and len(mode.images) > 1
+            # So may who faces elsewhere: he has hardly gone from where both ways begin.
+            goes_on = goes_on or image.turned_rad != 0.0
             if goes_on or not same_place(mode.x[own], x[own]):
-                image = mode.images.get(number, Image()).through(x[own], mode.x[own])
-                told.append(Otherwise(mode.of, mode.share, image, mode.since_t, mode.way))
+                there = image.through(x[own], mode.x[own])
+                told.append(Otherwise(mode.of, mode.share, there, mode.since_t, mode.way))
         if layout.state.nodes[name].index == number:
             found[name] = tuple(told)
     return found

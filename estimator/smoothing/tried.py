@@ -6,14 +6,18 @@ import numpy as np
 
 from estimator.fusion.images import Image
 from estimator.graph.dense import Array
+from estimator.measurements.bearing import within_pi
 from estimator.smoothing.flips import Flip
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.otherwise import same_place
+from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
-from estimator.smoothing.turns import reports_from
+from estimator.smoothing.turns import facing, reports_from, turn
 
 SAME_RAD = 0.4
-"""Headings nearer to each other than this are one, and not at rest yet."""
+"""Headings nearer to each other than this may be one that is not at rest yet."""
+PARTED = 0.1
+"""What the way between two headings costs more than either, in log likelihood, if they are two."""
 BEGINNINGS = 3
 """Images of a way that put somebody at the same place now, from keyframes this near, are the same."""
 
@@ -41,30 +45,61 @@ class Asked(NamedTuple):
     """Of whom it is asked where he is.
 
     Attributes:
-        layout: of the window.
+        problem: of the window.
         of: index of his walk.
         whole: where he was at any time, not only where he is now.
     """
 
-    layout: Layout
+    problem: Problem
     of: int
     whole: bool
+
+    @property
+    def layout(self) -> Layout:
+        """That of the window."""
+        return self.problem.layout
 
     def same_start(self, one: Begun, other: Begun) -> bool:
         """Whether two images lead to the same solution, as far as can be told before."""
         near = abs(one.flip.since - other.flip.since) < BEGINNINGS
+        if near and self._turned(one) and self._turned(other) and abs(self._apart_rad(one, other)) > SAME_RAD:
+            return False
         return near and self._same_places(one, other, self.of)
 
-    def same(self, one: Begun, other: Begun) -> bool:
+    def same(self, first: Tried, second: Tried) -> bool:
         """Whether two solutions are the same: one of a heading may not be at rest yet far from its start."""
+        one, other = first.begun, second.begun
         if not (self._turned(one) and self._turned(other)):
             return self._same_places(one, other, self.of)
         begins = reports_from(self.layout, self.of)
         starts_m = [self.layout.states(each.x, self.of)[begins : begins + 1, :2] for each in (one, other)]
         if not same_place(*starts_m) or not self._same_places(one, other):
             return False
-        facing_rad = [heading(self.layout, self.of, each.x) for each in (one, other)]
-        return bool(np.cos(facing_rad[0] - facing_rad[1]) > np.cos(SAME_RAD))
+        apart_rad = self._apart_rad(one, other)
+        if abs(apart_rad) > SAME_RAD:
+            return False
+        most = max(first.solved.cost, second.solved.cost) + PARTED
+        return self.problem.at(self._between(one, other, apart_rad)).cost < most
+
+    def _apart_rad(self, one: Begun, other: Begun) -> float:
+        """By how much the other's heading is to the left of the one's (rad)."""
+        was, there = (heading(self.layout, self.of, each.x) for each in (one, other))
+        return within_pi(there - was)
+
+    def _between(self, one: Begun, other: Begun, by_rad: float) -> Array:
+        """The estimate halfway between two headings, flat: each is turned by half of that about his start."""
+        since, found = reports_from(self.layout, self.of), []
+        for each, half_rad in ((one, 0.5 * by_rad), (other, -0.5 * by_rad)):
+            there = each.x.copy()
+            start_m = self.layout.states(there, self.of)[since, :2].copy()
+            turn(self.layout, there, self.of, Flip(since, facing(start_m, half_rad)))
+            found.append(there)
+        # A heading may have gone round as a whole.
+        was, there_rad = (heading(self.layout, self.of, x) for x in found)
+        walk = self.layout.walks[self.of]
+        rounds = 2.0 * np.pi * np.round((was - there_rad) / (2.0 * np.pi))
+        self.layout.states(found[1], self.of)[walk.first : walk.last + 1, 3] += rounds
+        return 0.5 * (found[0] + found[1])
 
     def _turned(self, one: Begun) -> bool:
         """Whether an estimate is one of several headings, not of several ways that a unit has gone since."""

@@ -41,18 +41,27 @@ def turns(heard: Heard, way_m: Array, walk: Walk, since: int) -> list[Flip]:
         walk: the walk.
         since: the keyframe at which it begins.
     """
-    radios = radios_of(heard)
-    if not radios:
-        # Nothing tells one heading from another: they are no few, and his covariance knows all of them.
-        return []
-    start_m = way_m[since]
-    led = way_m[walk.last] - start_m
-    angles = all_round()
-    for radio_m in radios:
-        towards = radio_m - start_m
-        mirror = 2.0 * (np.arctan2(towards[1], towards[0]) - np.arctan2(led[1], led[0]))
-        angles.insert(0, float(mirror))
-    return [Flip(since, facing(start_m, angle)) for angle in angles]
+    sides = to_other_sides(heard, way_m, walk, since)
+    # Where nothing tells one heading from another, they are no few, and his covariance knows all of them.
+    angles = [*reversed(sides), *all_round()] if sides else []
+    return [Flip(since, facing(way_m[since], angle)) for angle in angles]
+
+
+def to_other_sides(heard: Heard, way_m: Array, walk: Walk, since: int) -> list[float]:
+    """Turns of a unit's whole way to the other side of each radio's line from where it begins (rad).
+
+    Args:
+        heard: what its bearer has heard.
+        way_m: where he was at each keyframe, k × 2 (m).
+        walk: the walk.
+        since: the keyframe at which it begins.
+    """
+    led = way_m[walk.last] - way_m[since]
+    found = []
+    for radio_m in radios_of(heard):
+        towards = radio_m - way_m[since]
+        found.append(2.0 * float(np.arctan2(towards[1], towards[0]) - np.arctan2(led[1], led[0])))
+    return found
 
 
 def turn(layout: Layout, x: Array, index: int, flip: Flip) -> None:

@@ -12,6 +12,7 @@ from msgspec.structs import replace
 from estimator.fusion.beginnings import decide
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
+from estimator.measurements.bearing import within_pi
 from estimator.smoothing.branch import branch
 from estimator.smoothing.changed import changed_links
 from estimator.smoothing.extent import (
@@ -24,7 +25,7 @@ from estimator.smoothing.extent import (
     trim,
     work,
 )
-from estimator.smoothing.flips import Flip
+from estimator.smoothing.flips import Flip, heard_by
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.learn import learn
 from estimator.smoothing.likeliest import SLACKS_M, likeliest
@@ -34,8 +35,9 @@ from estimator.smoothing.rows import Rows
 from estimator.smoothing.settle import keep_keyframes, settle
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
+from estimator.smoothing.tried import SAME_RAD
 from estimator.smoothing.turned import turned
-from estimator.smoothing.turns import all_round, facing, reports_from, turn
+from estimator.smoothing.turns import all_round, facing, reports_from, to_other_sides, turn
 
 PERIOD_S = 8.0
 SOONEST_S = 3.0
@@ -126,7 +128,7 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         for name, images in otherwise(layout, solved.x, modes).items():
             state.nodes[name] = replace(state.nodes[name], otherwise=images)
         found = learn(state, problem, solved)
-        _judge_turns(state, layout, found)
+        _judge_turns(problem, solved, found)
         _tell_changes(state, problem, solved)
     except ValueError as error:
         text = f"the last minutes could not be solved again, positions go on without: {error}"
@@ -201,11 +203,21 @@ def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
     decide(state)
 
 
-def _judge_turns(state: FusionState, layout: Layout, found: Array) -> None:
+def _judge_turns(problem: Problem, solved: Solved, found: Array) -> None:
     """A unit whose heading has been found is not tried all round any more."""
+    layout = problem.layout
     for i, walk in enumerate(layout.walks):
-        node = state.nodes[walk.node.node]
+        node = layout.state.nodes[walk.node.node]
         sigma = float(np.sqrt(max(found[walk.last, i, 3, 3], 0.0)))
         one_of_two = any(other.image.turned_rad != 0.0 for other in node.otherwise)
-        if node.turned and sigma < FOUND_RAD and not one_of_two:
-            state.nodes[node.node] = replace(node, turned=False)
+        sure = sigma < FOUND_RAD and not one_of_two
+        if node.turned and sure and not _in_line(problem, solved, i):
+            layout.state.nodes[node.node] = replace(node, turned=False)
+
+
+def _in_line(problem: Problem, solved: Solved, index: int) -> bool:
+    """Whether a unit has led along the lines to all radios that tell of it: its sides part later."""
+    layout = problem.layout
+    walk, way_m = layout.walks[index], layout.states(solved.x, index)[:, :2]
+    sides = to_other_sides(heard_by(problem, solved, walk), way_m, walk, reports_from(layout, index))
+    return bool(sides) and all(abs(within_pi(by_rad)) < SAME_RAD for by_rad in sides)

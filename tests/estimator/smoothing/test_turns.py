@@ -1,0 +1,90 @@
+"""Whose unit may face anything, beside one radio: its ranges do not tell to which side of it he goes."""
+
+import math
+
+import numpy as np
+import pytest
+
+from estimator.graph.dense import Array
+from estimator.measurements import AnyReading
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.node import Node
+from estimator.measurements.range import Range
+from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.ellipses import outside
+
+RADIO_M = (18.0, 0.0, 1.0)
+UNKNOWN_RAD = 3.0
+SURE = 20.0
+"""Who is farther off, squared, is shown elsewhere, and sure of it: one in 20,000 is by chance."""
+
+
+def gone(headings_rad: list[float], paces: list[int]) -> Array:
+    """A way of some seconds in each direction, at a metre a second; places, k × 2 (m)."""
+    each = np.repeat(headings_rad, paces)
+    paces_m = np.stack([np.cos(each), np.sin(each)], axis=1)
+    return np.concatenate([np.zeros((1, 2)), np.cumsum(paces_m, axis=0)])
+
+
+def rests(way_m: Array, seconds: int) -> Array:
+    """The same way, begun after a rest."""
+    return np.concatenate([np.repeat(way_m[:1], seconds, axis=0), way_m])
+
+
+def outsides(way_m: Array, seed: int, told_rad: float, sigma_rad: float = UNKNOWN_RAD) -> list[float]:
+    """Squared distances from where he is shown to where he is, by what is said of them, second by second.
+
+    Args:
+        way_m: where he is each second, k × 2 (m).
+        seed: of all noise.
+        told_rad: the heading of his unit's frame as it is told.
+        sigma_rad: how far off that may be.
+    """
+    chance = np.random.default_rng(seed)
+    tracker, found = KirchhoffTracker(), list[float]()
+    begins = Node(
+        t=0.0,
+        node="ff1",
+        role="responder",
+        position_m=(0.0, 0.0, 0.0),
+        sigma_m=0.2,
+        heading_rad=told_rad,
+        heading_sigma_rad=sigma_rad,
+    )
+    tracker.fold([Node(t=0.0, node="a1", role="anchor", position_m=RADIO_M, sigma_m=0.05), begins])
+    for second in range(1, len(way_m)):
+        t, heard = float(second), list[AnyReading]()
+        for half in (0.5, 0.0):
+            at = way_m[second] - half * (way_m[second] - way_m[second - 1])
+            range_m = math.hypot(*(at - RADIO_M[:2]), RADIO_M[2]) + float(chance.normal(0.0, 0.1))
+            heard.append(Range(t=t - half, a="ff1", b="a1", range_m=range_m, technology="uwb", sigma_m=0.1))
+        e, n = (way_m[second] - way_m[second - 1] + chance.normal(0.0, 0.02, 2)).tolist()
+        tracker.fold([Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=(e, n, 0.0)), *heard])
+        shown = next(one for one in tracker.estimates() if one.node == "ff1")
+        found.append(outside(shown.position_m, shown.covariance_m2, np.array([*way_m[second], 0.0])))
+    return found
+
+
+SEEDS = range(2)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("told_rad", [0.0, 2.0])
+def test_who_rests_before_he_goes_may_go_to_either_side(side: float, told_rad: float) -> None:
+    """A metre from where he stood both sides are beside each other; after twenty they are not."""
+    way_m = rests(gone([1.1 * side], [20]), 5)
+    assert max(max(outsides(way_m, seed, told_rad)) for seed in SEEDS) < SURE
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("off_rad", [0.12, 0.17])
+def test_two_headings_near_each_other_are_two_once_they_have_led_apart(side: float, off_rad: float) -> None:
+    way_m = gone([off_rad * side, (off_rad + 0.6 - math.pi) * side], [25, 8])
+    assert max(max(outsides(way_m, seed, told_rad=1.0)) for seed in SEEDS) < SURE
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("off_rad", [0.05, 0.15])
+def test_who_goes_to_a_radio_may_pass_it_on_either_side(side: float, off_rad: float) -> None:
+    way_m = gone([off_rad * side, 0.3 * side], [13, 25])
+    assert max(max(outsides(way_m, seed, told_rad=1.0)) for seed in SEEDS) < SURE
