@@ -48,8 +48,9 @@ SLIP_M = 0.5
 SLIP_RARE = 5.0
 """Log odds against a slip in one step between two keyframes: one in five minutes."""
 HEADING_SIGMA_RAD = 0.1
-TURNED_SIGMA_RAD = 0.6
-"""A heading that is less sure than this is no small angle: it is tried all round."""
+TURNED_SIGMA_RAD = 0.15
+"""A heading that is less sure than this is tried all round: one radio leaves two, and what was told does not
+tell them apart where they are as near to it as to each other."""
 TURNS = 8
 STILL_MPS = 0.03
 STILL_TURN_RADPS = radians(3.0)

@@ -9,6 +9,7 @@ no reading inside the window stays linearised at an estimate that has turned out
 import numpy as np
 from msgspec.structs import replace
 
+from estimator.fusion import physics
 from estimator.fusion.beginnings import decide
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
@@ -58,7 +59,6 @@ ITERATIONS = 4
 RESTING = 0.1
 """A window that gains less in log likelihood is solved again soon anyway."""
 TURN_ITERATIONS = 8
-FOUND_RAD = 0.15
 
 
 def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
@@ -210,7 +210,7 @@ def _judge_turns(problem: Problem, solved: Solved, found: Array) -> None:
         node = layout.state.nodes[walk.node.node]
         sigma = float(np.sqrt(max(found[walk.last, i, 3, 3], 0.0)))
         one_of_two = any(other.image.turned_rad != 0.0 for other in node.otherwise)
-        sure = sigma < FOUND_RAD and not one_of_two
+        sure = sigma < physics.TURNED_SIGMA_RAD and not one_of_two
         if node.turned and sure and not _in_line(problem, solved, i):
             layout.state.nodes[node.node] = replace(node, turned=False)
 

@@ -88,3 +88,10 @@ def test_two_headings_near_each_other_are_two_once_they_have_led_apart(side: flo
 def test_who_goes_to_a_radio_may_pass_it_on_either_side(side: float, off_rad: float) -> None:
     way_m = gone([off_rad * side, 0.3 * side], [13, 25])
     assert max(max(outsides(way_m, seed, told_rad=1.0)) for seed in SEEDS) < SURE
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_heading_that_is_hardly_told_leaves_either_side_open(side: float) -> None:
+    """It is told as 0.6 rad off, give or take 0.5 rad; to the other side of the radio would fit it better."""
+    way_m = gone([0.5 * side], [25])
+    assert max(max(outsides(way_m, seed, -0.6 * side, 0.5)) for seed in SEEDS) < SURE
