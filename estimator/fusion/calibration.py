@@ -32,16 +32,19 @@ def told_of(sigma: float, estimate: float, variance: float) -> Told:
     return UNTOLD if information * variance < NOTHING else (information, estimate / variance)
 
 
-def narrow_sigma(outliers: float) -> float:
+def narrow_sigma(outliers: float, scatter: float = math.inf) -> float:
     """Standard deviation of a calibrated technology's scale among walls.
 
     The farther a range, the more walls it crosses, and each makes it longer: where many are clearly too
-    long, the others are so too, about in proportion to their length.
+    long, the others are so too, about in proportion to their length. What walls make a range longer by
+    scatters as much (`smoothing.obstructed`): where the others hardly scatter, they are in sight, and the
+    many are echoes that say nothing of them.
 
     Args:
         outliers: share of its ranges that are clearly too long, 0 to 1.
+        scatter: what the others scatter by, over their length; infinite where nobody knows.
     """
-    return math.hypot(physics.RANGE_SCALE_SIGMA, physics.OBSTRUCTED_SCALE * outliers)
+    return math.hypot(physics.RANGE_SCALE_SIGMA, min(physics.OBSTRUCTED_SCALE * outliers, scatter))
 
 
 def scale_sigma(share: float, narrow: float) -> float:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.fusion import physics
-from estimator.fusion.calibration import bias_sigma_m, narrow_sigma, scale_sigma
+from estimator.fusion.calibration import bias_sigma_m, scale_sigma
 from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
@@ -187,7 +187,7 @@ def technology_states(state: FusionState, technology: str) -> Variable:
     """The block of scale and bias of a ranging technology, added when first used."""
     states = Variable("range", technology)
     if states not in state.graph:
-        scale = scale_sigma(state.uncalibrated.get(technology, 0.0), narrow_sigma(state.outliers(technology)))
+        scale = scale_sigma(state.uncalibrated.get(technology, 0.0), state.narrow_sigma(technology))
         state.graph.add_node(states, (0.0, 0.0), (scale, bias_sigma_m(technology)))
     return states
 

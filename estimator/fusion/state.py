@@ -1,13 +1,15 @@
 """Everything that the fusion remembers between two ticks."""
 
+import math
 from typing import Literal, Self
 
 import numpy as np
 
 from estimator.estimate import Notice, NoticeCode, Vector3
 from estimator.fusion import physics
+from estimator.fusion.calibration import narrow_sigma
 from estimator.fusion.gyros import bias_sigma_radps
-from estimator.fusion.ledger import Ledger
+from estimator.fusion.ledger import RANGE, Ledger
 from estimator.fusion.links import Links
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.noise import LearnedNoise
@@ -153,9 +155,14 @@ class FusionState:
         """Standard deviation of the prior of the scale of a node's unit."""
         return physics.STRAPDOWN_SCALE_SIGMA if node.node in self.navigations else physics.SCALE_SIGMA
 
-    def outliers(self, technology: str) -> float:
-        """Share of a ranging technology's readings that are outliers, as far as it is known."""
-        return self.learned(technology).outliers(physics.RANGE_NOISE.outliers)
+    def narrow_sigma(self, technology: str) -> float:
+        """Standard deviation of a ranging technology's scale where it is calibrated."""
+        learned, pairs, scatter = self.learned(technology), self.ledger.table("pairs"), math.inf
+        if technology in self.sources:
+            mine = (pairs[:, 1] == RANGE) & (pairs[:, 6] == self.sources.index(technology))
+            length_m, sigma_m = (float(np.sum(pairs[mine, column] ** 2)) ** 0.5 for column in (4, 5))
+            scatter = learned.factor * sigma_m / length_m if length_m > 0.0 else math.inf
+        return narrow_sigma(learned.outliers(physics.RANGE_NOISE.outliers), scatter)
 
     def learned(self, technology: str) -> LearnedNoise:
         """Noise of a technology, as far as it is known."""

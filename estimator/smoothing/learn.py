@@ -10,7 +10,7 @@ import numpy as np
 from msgspec.structs import replace
 from numba import njit
 
-from estimator.fusion.calibration import narrow_sigma, scale_sigma, told_of, uncalibrated
+from estimator.fusion.calibration import scale_sigma, told_of, uncalibrated
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.slips import Doubts, admit, doubts_of, find_slips
@@ -144,7 +144,7 @@ def calibrate(state: FusionState, problem: Problem, x: Array, border: Array) -> 
     for key, start in problem.layout.technologies.items():
         if key[0] == "range" and key not in known and problem.rows.by_units(key[1]):
             name = state.sources[key[1]]
-            narrow = narrow_sigma(state.outliers(name))
+            narrow = state.narrow_sigma(name)
             sigma = scale_sigma(state.uncalibrated.get(name, 0.0), narrow)
             told = uncalibrated(sigma, float(x[size + start]), float(border[start, start]), narrow)
             state.uncalibrated[name] = told

@@ -63,3 +63,9 @@ def test_where_walls_make_many_ranges_too_long_a_scale_of_some_percent_is_no_mis
     in_sight, obstructed = (uncalibrated(0.15, 0.04, 0.01**2, narrow_sigma(share)) for share in (0.02, 0.4))
     assert in_sight > 0.9
     assert obstructed < 0.5
+
+
+def test_where_other_ranges_hardly_scatter_many_echoes_are_no_reason_to_let_a_scale_go() -> None:
+    """What walls make of a range scatters as much as it makes it longer."""
+    assert narrow_sigma(0.4, 0.3 / 10.0) > 0.03
+    assert narrow_sigma(0.4, 0.1 / 50.0) < 0.006

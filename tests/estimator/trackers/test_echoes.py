@@ -1,0 +1,52 @@
+"""Ranges that are far too long, as echoes are: they say nothing of those that are not."""
+
+import math
+
+import numpy as np
+import pytest
+
+from estimator.measurements import AnyReading
+from estimator.measurements.node import Node
+from estimator.measurements.range import Range
+from estimator.trackers import smoother
+from estimator.trackers.base import TrackerSettings
+
+ANCHORS_M = {"a0": (0.0, 0.0), "a1": (12.0, 0.0), "a2": (12.0, 8.0), "a3": (0.0, 8.0)}
+"""On a vehicle, radios stand near each other."""
+OFF_M = {"a0": 0.1, "a1": -0.1, "a2": -0.1, "a3": 0.1}
+"""What each antenna makes of a range: the nearer two seem to be nearer, as a scale would have it."""
+SECONDS, PER_S, SIGMA_M, ECHO_M = 60, 5, 0.03, 10.0
+
+
+def at_m(t: float) -> tuple[float, float]:
+    """Where somebody is who walks about forty metres off."""
+    angle = 0.75 - t / 40.0
+    return 6.0 + 40.0 * math.cos(angle), 4.0 + 40.0 * math.sin(angle)
+
+
+def heard(seed: int, echoes: float) -> list[AnyReading]:
+    """Ranges to a walker without PDR, of which a share are echoes."""
+    chance = np.random.default_rng(seed)
+    readings: list[AnyReading] = [
+        Node(t=0.0, node=name, role="anchor", position_m=(*place, 0.0)) for name, place in ANCHORS_M.items()
+    ]
+    readings.append(Node(t=0.0, node="f", role="responder", position_m=(*at_m(0.0), 0.0), sigma_m=0.5))
+    for t in np.arange(1, SECONDS * PER_S) / PER_S:
+        for name, place in ANCHORS_M.items():
+            off_m = OFF_M[name] + chance.normal(0.0, SIGMA_M)
+            echo_m = chance.uniform(0.0, ECHO_M) if chance.random() < echoes else 0.0
+            range_m = math.dist(at_m(t), place) + off_m + echo_m
+            readings.append(Range(t=float(t), a="f", b=name, range_m=range_m, technology="uwb"))
+    return readings
+
+
+def off_m(readings: list[AnyReading]) -> float:
+    """Root mean square of how far off the smoothed way is (m)."""
+    track = smoother("kirchhoff", TrackerSettings()).smooth(readings)["f"]
+    return math.sqrt(sum(math.dist(p.position_m[:2], at_m(p.t)) ** 2 for p in track) / len(track))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_echoes_among_sharp_ranges_do_not_make_the_others_be_taken_for_too_long(seed: int) -> None:
+    in_sight, among_echoes = off_m(heard(seed, 0.0)), off_m(heard(seed, 0.3))
+    assert among_echoes < in_sight + 0.1
