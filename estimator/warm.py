@@ -4,7 +4,7 @@ import numpy as np
 
 from estimator.fusion.descent import descend
 from estimator.fusion.free import free_motion
-from estimator.fusion.modes import Sought, find_modes
+from estimator.fusion.modes import Sought, costs_of, find_modes
 from estimator.fusion.motion import walked
 from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.report import shown
@@ -27,7 +27,6 @@ from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.arranged import arrange, scattered, sigmas
 from estimator.smoothing.bent import add_bends
 from estimator.smoothing.chosen import choose
-from estimator.smoothing.elsewhere import costs_of
 from estimator.smoothing.ends import Nodes, Table, place_ends, stand
 from estimator.smoothing.learn import noise_scores
 from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals, stretch

@@ -5,6 +5,7 @@ It enters the graph only once the second mode is clearly worse; the window is th
 sightings, each used once.
 """
 
+import math
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -12,13 +13,15 @@ import numpy as np
 from estimator.fusion import physics
 from estimator.fusion.introduce import NO_PRIOR_SIGMA_M, place
 from estimator.fusion.ledger import RANGE
-from estimator.fusion.modes import Mode, Sought, find_modes
+from estimator.fusion.modes import Mode, Sought, costs_of, find_modes, short_costs
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.pairs import path_loss_states, technology_states
 from estimator.fusion.sightings import Sightings, of_node
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements.node import MOVING_ROLES
+from estimator.measurements.range import predict_range
+from estimator.measurements.rssi import predict_rssi
 
 
 class Chosen(NamedTuple):
@@ -86,9 +89,44 @@ def _choose(
     modes = find_modes(sought)
     if not modes or modes[0].sigma_m > physics.DECIDED_SIGMA_M[kind]:
         return None
-    if len(modes) > 1 and modes[1].cost - modes[0].cost < physics.MODE_MARGIN:
+    told = (
+        sought,
+        seen.alike,
+        state.learned(state.sources[seen.source]).outliers(physics.NOISES[seen.kind][0]),
+    )
+    if not _clear(modes, [_odd_cost(mode, *told) for mode in modes]):
         return None
     return Chosen(modes[0], sought.up_m, up_sigma)
+
+
+def _clear(modes: list[Mode], odd: list[float]) -> bool:
+    """Whether the best of some modes is clearly better than all others, by both of their costs."""
+    apart = min((mode.cost for mode in modes[1:]), default=math.inf) - modes[0].cost
+    return min(apart, min(odd[1:], default=math.inf) - odd[0]) >= physics.MODE_MARGIN
+
+
+def _odd_cost(mode: Mode, sought: Sought, alike: Array, outliers: float) -> float:
+    """What a mode costs, in log likelihood, where readings far too long, or too weak, are nothing unusual.
+
+    By its tails a Cauchy loss would rather believe in a place from which echoes are less too long, though
+    sharp ranges contradict it.
+
+    Args:
+        mode: the mode.
+        sought: what was measured.
+        alike: how many readings of its link share an error, as each counts, m.
+        outliers: share of the readings that are.
+    """
+    ranged, m = sought.kind == "range", len(sought.value)
+    predict, usual = (predict_range, physics.RANGE_NOISE) if ranged else (predict_rssi, physics.RSSI_NOISE)
+    there, extra = np.tile(mode.position_m, (m, 1)), (np.full(m, one) for one in mode.extra)
+    residual = sought.value - predict(sought.points, there, *extra).predicted
+    noise = np.tile((outliers, usual.shift, usual.spread), (m, 1))
+    costs = costs_of(residual, sought.sigma, noise, np.full(m, ranged), alike)
+    if ranged:
+        costs += short_costs(residual, sought.sigma)
+    off, up = mode.extra - sought.extra, (mode.position_m[2] - sought.up_m) / sought.up_sigma_m
+    return float(costs.sum() + 0.5 * (off @ np.linalg.solve(sought.extra_covariance, off) + up**2))
 
 
 def _begin(state: FusionState, node: NodeState, seen: Sightings, chosen: Chosen) -> None:

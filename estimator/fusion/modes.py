@@ -4,8 +4,10 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from estimator.graph.dense import Array
+from estimator.graph.robust import cauchy_cost, mixture_cost
 from estimator.graph.triangular import factorised, solved
 from estimator.measurements.range import range_at
 from estimator.measurements.rssi import rssi_at
@@ -16,9 +18,41 @@ CAUCHY = 2.0
 APART_M = 2.0
 RESTING = 1e-4
 """Gain in log likelihood below which a place has been found."""
+TOO_SHORT = 3.0
+"""Log odds against an odd range being too short: walls and echoes make ranges longer, 19 in 20 of them."""
 USED_MAX = 120
 LEAST_INFORMATION = 1e-8
 """On a place that no reading tells of: 10 km."""
+
+
+@njit(cache=True, error_model="numpy")
+def costs_of(residual: Array, sigma: Array, noise: Array, ranged: NDArray[np.bool_], alike: Array) -> Array:
+    """How much readings are worse than perfect ones, each in log likelihood.
+
+    A wall makes all ranges too long that are measured through it. k of them that may share it are neither k
+    witnesses nor one: they count as 2 √k.
+    """
+    outliers, shift, spread = noise[:, 0], noise[:, 1], noise[:, 2]
+    best = mixture_cost(np.zeros(len(sigma)), sigma, outliers, shift, spread)
+    cost = mixture_cost(residual, sigma, outliers, shift, spread)
+    most = cauchy_cost(residual / sigma, CAUCHY)
+    for i in range(len(cost)):
+        cost[i] = min(cost[i] - best[i], most[i])
+        if ranged[i] and residual[i] > 0.0:
+            cost[i] /= np.sqrt(alike[i])
+    return cost
+
+
+@njit(cache=True, error_model="numpy")
+def short_costs(residual: Array, sigma: Array) -> Array:
+    """What ranges that are too short cost more than those as much too long, in log likelihood, m.
+
+    Args:
+        residual: measured less predicted, m (m).
+        sigma: standard deviations, m (m).
+    """
+    odd = (np.minimum(residual, 0.0) / sigma / CAUCHY) ** 2
+    return TOO_SHORT * odd / (1.0 + odd)
 
 
 class Sought(NamedTuple):
@@ -53,12 +87,14 @@ class Mode(NamedTuple):
         cost: negative log likelihood, up to a constant.
         sigma_m: standard deviation along the worst horizontal direction (m).
         up_sigma_m: standard deviation of the height (m).
+        extra: states of the technology there, 2.
     """
 
     position_m: Array
     cost: float
     sigma_m: float
     up_sigma_m: float
+    extra: Array
 
 
 def find_modes(sought: Sought) -> list[Mode]:
@@ -81,7 +117,8 @@ def find_modes(sought: Sought) -> list[Mode]:
         i = left[0]
         covariance = np.linalg.inv(normal[i])[:3, :3]
         spread = float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1]))
-        modes.append(Mode(state[i, :3].copy(), float(cost[i]), spread, float(np.sqrt(covariance[2, 2]))))
+        up_sigma_m = float(np.sqrt(covariance[2, 2]))
+        modes.append(Mode(state[i, :3].copy(), float(cost[i]), spread, up_sigma_m, state[i, 3:].copy()))
         # Most starts lead to the same few places.
         off = state[left, :2] - state[i, :2]
         apart = np.hypot(off[:, 0], off[:, 1]) > max(APART_M, 3.0 * spread)
@@ -154,7 +191,19 @@ def _descend(
             else:
                 damping = min(damping * 8.0, 1e9)
         found[i], normals[i], costs[i] = state, normal, cost
+        if ranged:
+            costs[i] += short_costs(_residuals(points, value, state), sigma).sum()
     return found, normals, costs
+
+
+@njit(cache=True, error_model="numpy")
+def _residuals(points: Array, value: Array, state: Array) -> Array:
+    """Of ranges at a state, 5: measured less predicted, m (m)."""
+    found = np.empty(len(value))
+    for i in range(len(value)):
+        e, n, u = points[i, 0] - state[0], points[i, 1] - state[1], points[i, 2] - state[2]
+        found[i] = value[i] - range_at(e * e + n * n + u * u, state[3], state[4]).predicted
+    return found
 
 
 @njit(cache=True, error_model="numpy")

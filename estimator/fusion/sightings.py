@@ -27,6 +27,7 @@ class Sightings(NamedTuple):
         spread: how unsure each place is against the newest one, m (m).
         value: ranges (m) or powers less what was sent (dBm), m.
         sigma: claimed or assumed standard deviations, m.
+        alike: how many readings of its link share an error, as each counts, m.
     """
 
     kind: int
@@ -36,6 +37,7 @@ class Sightings(NamedTuple):
     spread: Array
     value: Array
     sigma: Array
+    alike: Array
 
 
 def of_node(state: FusionState, node: NodeState, since_t: float) -> Sightings | None:
@@ -70,6 +72,7 @@ def of_node(state: FusionState, node: NodeState, since_t: float) -> Sightings | 
         spread[known],
         mine[:, 4] - mine[:, 7],
         mine[:, 5],
+        mine[:, 8],
     )
 
 

@@ -4,21 +4,16 @@ from collections.abc import Iterable
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
 from estimator.fusion.ledger import RANGE
-from estimator.fusion.modes import CAUCHY, Mode, Sought, find_modes
+from estimator.fusion.modes import Mode, Sought, costs_of, find_modes
 from estimator.fusion.nodes import NodeState
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
-from estimator.graph.robust import cauchy_cost, mixture_cost
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
-
-Flags = NDArray[np.bool_]
 
 READINGS_MIN = 5
 USUAL_COST = 1.0
@@ -27,24 +22,6 @@ GAIN = 10.0
 FAR_M = 1.5
 UNSURE_M = 0.3
 UP_SIGMA_M = 1.0
-
-
-@njit(cache=True, error_model="numpy")
-def costs_of(residual: Array, sigma: Array, noise: Array, ranged: Flags, alike: Array) -> Array:
-    """How much readings are worse than perfect ones, each in log likelihood.
-
-    A wall makes all ranges too long that are measured through it. k of them that may share it are neither k
-    witnesses nor one: they count as 2 √k.
-    """
-    outliers, shift, spread = noise[:, 0], noise[:, 1], noise[:, 2]
-    best = mixture_cost(np.zeros(len(sigma)), sigma, outliers, shift, spread)
-    cost = mixture_cost(residual, sigma, outliers, shift, spread)
-    most = cauchy_cost(residual / sigma, CAUCHY)
-    for i in range(len(cost)):
-        cost[i] = min(cost[i] - best[i], most[i])
-        if ranged[i] and residual[i] > 0.0:
-            cost[i] /= np.sqrt(alike[i])
-    return cost
 
 
 class Seen(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion.ledger import RANGE, RSSI
-from estimator.fusion.modes import CAUCHY
+from estimator.fusion.modes import CAUCHY, costs_of
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.graph.robust import cauchy_cost
@@ -22,7 +22,6 @@ from estimator.smoothing.elsewhere import (
     best_place,
     changed_t,
     contradicted,
-    costs_of,
 )
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved

@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from estimator.estimate import Vector3
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.trackers import smoother
+from estimator.trackers import create, smoother
 from estimator.trackers.base import TrackerSettings
 
 ANCHORS_M = {"a0": (0.0, 0.0), "a1": (12.0, 0.0), "a2": (12.0, 8.0), "a3": (0.0, 8.0)}
@@ -50,3 +51,39 @@ def off_m(readings: list[AnyReading]) -> float:
 def test_echoes_among_sharp_ranges_do_not_make_the_others_be_taken_for_too_long(seed: int) -> None:
     in_sight, among_echoes = off_m(heard(seed, 0.0)), off_m(heard(seed, 0.3))
     assert among_echoes < in_sight + 0.1
+
+
+CORNERS_M = {"a0": (0.0, 0.0), "a1": (0.0, 4.0), "a2": (4.0, 4.0), "a3": (4.0, 0.0)}
+HERE_M, IMAGE_M = (2.9, 3.6), (-2.9, 3.6)
+"""Where somebody switches on, and his image beyond the wall between the first two radios."""
+
+
+def begun_at(scatter_m: float) -> Vector3 | None:
+    """Where who switches on is shown, whose ranges to `a2` are about as long as from his image."""
+    readings: list[AnyReading] = [
+        Node(t=0.0, node=name, role="anchor", position_m=(*place, 0.0)) for name, place in CORNERS_M.items()
+    ]
+    readings.append(Node(t=0.0, node="f", role="responder"))
+    for k in range(15):
+        name = f"a{k % 4}"
+        range_m = math.dist(HERE_M, CORNERS_M[name])
+        if name == "a2":
+            range_m = math.dist(IMAGE_M, CORNERS_M[name]) + scatter_m * (-1) ** (k // 4)
+        readings.append(
+            Range(t=0.1 + 0.12 * k, a="f", b=name, range_m=range_m, sigma_m=0.1, technology="uwb")
+        )
+    tracker = create("kirchhoff", TrackerSettings())
+    tracker.fold(readings)
+    return next(e.position_m for e in tracker.estimates() if e.node == "f")
+
+
+def test_nobody_begins_where_ranges_in_sight_would_be_metres_too_short() -> None:
+    """An echo is too long; that all others are too short is no better story, however often it is heard."""
+    begun = begun_at(0.3)
+    assert begun is not None
+    assert math.dist(begun[:2], HERE_M) < 0.3
+
+
+def test_where_an_echo_stays_the_same_it_is_waited_for_more() -> None:
+    begun = begun_at(0.0)
+    assert begun is None or math.dist(begun[:2], HERE_M) < 0.3
