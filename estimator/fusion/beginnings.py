@@ -2,21 +2,23 @@
 
 A range-only node starts as a ring, and after a straight path as two mirror images (estimation.md, point 7).
 It enters the graph only once the second mode is clearly worse; the window is then solved again with all its
-sightings, each used once.
+sightings, each used once. Who moves cannot wait for that: what is older tells ever less of where he is now.
+After some seconds he is shown at the best mode, and the others are told as images of it (decision 0010).
 """
 
-import math
 from typing import Literal, NamedTuple
 
 import numpy as np
+from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.introduce import NO_PRIOR_SIGMA_M, place
+from estimator.fusion.images import Otherwise, mirrored
+from estimator.fusion.introduce import NO_PRIOR_SIGMA_M, Entered, place
 from estimator.fusion.ledger import RANGE
 from estimator.fusion.modes import Mode, Sought, costs_of, find_modes, short_costs
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.pairs import path_loss_states, technology_states
-from estimator.fusion.sightings import Sightings, of_node
+from estimator.fusion.sightings import Sightings, heard_between, of_node
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements.node import MOVING_ROLES
@@ -25,15 +27,19 @@ from estimator.measurements.rssi import predict_rssi
 
 
 class Chosen(NamedTuple):
-    """A decided beginning: the mode, and the height prior that it was found with (m)."""
+    """A beginning: the mode, others that fit, whether it is decided, and the height prior behind it (m)."""
 
     mode: Mode
+    others: list[Mode]
+    sure: bool
     up_m: float
     up_sigma_m: float
 
 
 def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None:
     """Try undecided nodes that have been seen anew, and begin those whose position is decided.
+
+    Who moves is begun where he may be when he has been heard for `physics.UNSEEN_S`, decided or not.
 
     Args:
         state: the fusion, changed in place.
@@ -45,14 +51,19 @@ def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None
         if node.mode != "undecided":
             del state.sightings[name]
             continue
+        moving = node.role in MOVING_ROLES
         tried = state.tried.get(name, 0)
-        if seen < max(physics.SIGHTINGS_MIN, min(tried + 10, 1.2 * tried)):
+        often = seen >= max(physics.SIGHTINGS_MIN, min(tried + 10, 1.2 * tried))
+        since_t, until_t = heard_between(state, node) if moving else (0.0, 0.0)
+        late = until_t - since_t >= physics.UNSEEN_S
+        if not often and not late:
             continue
         state.tried[name] = seen
-        moving = node.role in MOVING_ROLES
-        kept_s = physics.MOVING_SIGHTINGS_S if moving else sightings_s
+        kept_s = sightings_s
+        if moving:
+            kept_s = physics.UNSEEN_S if late else physics.MOVING_SIGHTINGS_S
         sightings = of_node(state, node, state.newest_t - kept_s)
-        if sightings is None or len(sightings.t) < physics.SIGHTINGS_MIN:
+        if sightings is None or (not late and len(sightings.t) < physics.SIGHTINGS_MIN):
             continue
         owner = state.sources[sightings.source]
         ranged = sightings.kind == RANGE
@@ -61,20 +72,24 @@ def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None
             covariance = state.graph.covariance()
         rows = state.graph.rows(states)
         chosen = _choose(state, node, sightings, state.graph.value(states).copy(), covariance[rows, rows])
-        if chosen is not None:
-            _begin(state, node, sightings, chosen)
+        if chosen is not None and (late or chosen.sure):
+            _begin(state, node, sightings, chosen, since_t)
             covariance = None
 
 
 def _choose(
     state: FusionState, node: NodeState, seen: Sightings, extra: Array, extra_covariance: Array
 ) -> Chosen | None:
+    moving = node.role in MOVING_ROLES
     sigma = seen.sigma * state.learned(state.sources[seen.source]).factor
+    spread = seen.spread
+    if moving:
+        spread = np.hypot(spread, _walked_m(node, seen.t.max() - seen.t))
     if seen.kind == RANGE:
-        sigma = np.hypot(sigma, seen.spread)
-    up_sigma = physics.UNDECIDED_UP_SIGMA_M
-    if node.role in MOVING_ROLES:
-        up_sigma = physics.UNDECIDED_MOVING_UP_SIGMA_M
+        sigma = np.hypot(sigma, spread)
+    elif moving:
+        sigma = np.hypot(sigma, spread * _db_per_m(seen.value, extra))
+    up_sigma = physics.UNDECIDED_MOVING_UP_SIGMA_M if moving else physics.UNDECIDED_UP_SIGMA_M
     kind: Literal["range", "rssi"] = "range" if seen.kind == RANGE else "rssi"
     sought = Sought(
         kind=kind,
@@ -87,22 +102,18 @@ def _choose(
         extra_covariance=extra_covariance,
     )
     modes = find_modes(sought)
-    if not modes or modes[0].sigma_m > physics.DECIDED_SIGMA_M[kind]:
+    if not modes:
         return None
-    told = (
-        sought,
-        seen.alike,
-        state.learned(state.sources[seen.source]).outliers(physics.NOISES[seen.kind][0]),
-    )
-    if not _clear(modes, [_odd_cost(mode, *told) for mode in modes]):
-        return None
-    return Chosen(modes[0], sought.up_m, up_sigma)
-
-
-def _clear(modes: list[Mode], odd: list[float]) -> bool:
-    """Whether the best of some modes is clearly better than all others, by both of their costs."""
-    apart = min((mode.cost for mode in modes[1:]), default=math.inf) - modes[0].cost
-    return min(apart, min(odd[1:], default=math.inf) - odd[0]) >= physics.MODE_MARGIN
+    outliers = state.learned(state.sources[seen.source]).outliers(physics.NOISES[seen.kind][0])
+    best = modes[0]
+    odd = [_odd_cost(mode, sought, seen.alike, outliers) for mode in modes]
+    others = [
+        mode
+        for mode, cost in zip(modes[1:], odd[1:], strict=True)
+        if min(mode.cost - best.cost, cost - odd[0]) < physics.MODE_MARGIN
+    ]
+    sure = best.sigma_m <= physics.DECIDED_SIGMA_M[kind] and not others
+    return Chosen(best, others, sure, sought.up_m, up_sigma)
 
 
 def _odd_cost(mode: Mode, sought: Sought, alike: Array, outliers: float) -> float:
@@ -129,14 +140,55 @@ def _odd_cost(mode: Mode, sought: Sought, alike: Array, outliers: float) -> floa
     return float(costs.sum() + 0.5 * (off @ np.linalg.solve(sought.extra_covariance, off) + up**2))
 
 
-def _begin(state: FusionState, node: NodeState, seen: Sightings, chosen: Chosen) -> None:
+def _walked_m(node: NodeState, s: Array) -> Array:
+    """How far along each axis one may walk in times, m (m)."""
+    speed_mps, _ = physics.SPEED_SIGMA_MPS[node.role]
+    memory_s = physics.SPEED_MEMORY_S[node.role]
+    x = s / memory_s
+    return np.asarray(speed_mps * memory_s * np.sqrt(2.0 * np.maximum(x + np.expm1(-x), 0.0)))
+
+
+def _db_per_m(dbm: Array, path_loss: Array) -> Array:
+    """By how much powers change with the distance, where they seem to come from, m (dB/m)."""
+    exponent = max(float(path_loss[1]), 1.0)
+    distance_m = 10.0 ** np.clip((path_loss[0] - dbm) / (10.0 * exponent), 0.0, 2.5)
+    return np.asarray(10.0 * exponent / np.log(10.0) / distance_m)
+
+
+def _begin(state: FusionState, node: NodeState, seen: Sightings, chosen: Chosen, since_t: float) -> None:
     mode = chosen.mode
     t = float(seen.t.max())
     state.due = True
-    if node.role in MOVING_ROLES:
-        # The sightings of the last seconds stand in the mode's own covariance; they are not used again.
-        place(state, node, t, mode.position_m, (mode.sigma_m, mode.sigma_m, mode.up_sigma_m))
-        return
-    wide = (NO_PRIOR_SIGMA_M, NO_PRIOR_SIGMA_M, chosen.up_sigma_m)
-    place(state, node, t, (float(mode.position_m[0]), float(mode.position_m[1]), chosen.up_m), wide)
     state.count("fused", len(seen.t))
+    here = (float(mode.position_m[0]), float(mode.position_m[1]), chosen.up_m)
+    if node.role not in MOVING_ROLES:
+        place(state, node, t, here, (NO_PRIOR_SIGMA_M, NO_PRIOR_SIGMA_M, chosen.up_sigma_m))
+        return
+    # Until the window is solved, which is at once, what the sightings tell stands in the filter.
+    farthest_m = float(np.hypot(*(seen.points[:, :2] - mode.position_m[:2]).T).max())
+    reach_m = max(physics.REACH_M, farthest_m)
+    centre = (*seen.points[:, :2].mean(axis=0).tolist(), chosen.up_m)
+    entered = Entered(since_t, centre, (reach_m, reach_m, chosen.up_sigma_m))
+    sigma_m = min(mode.sigma_m, reach_m)
+    since_t = since_t if state.window_t is None else max(float(np.floor(since_t)), state.window_t)
+    place(
+        state,
+        replace(node, otherwise=_otherwise(node, chosen, since_t)),
+        t,
+        mode.position_m,
+        (sigma_m, sigma_m, mode.up_sigma_m),
+        entered,
+    )
+
+
+def _otherwise(node: NodeState, chosen: Chosen, since_t: float) -> tuple[Otherwise, ...]:
+    """The other modes as images of the best one, in the line that is as far from both."""
+    best = chosen.mode
+    odds = [float(np.exp(best.cost - mode.cost)) for mode in chosen.others]
+    total, found = 1.0 + sum(odds), []
+    for mode, each in zip(chosen.others, odds, strict=True):
+        across = (mode.position_m - best.position_m)[:2]
+        middle = 0.5 * (mode.position_m + best.position_m)[:2]
+        image = mirrored(middle, float(np.arctan2(across[0], -across[1])))
+        found.append(Otherwise(node.index, each / total, image, since_t, image))
+    return tuple(found)

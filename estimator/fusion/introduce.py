@@ -1,6 +1,7 @@
 """Nodes enter: by a `node` reading, at a fix, at the base, or where a responder drops them."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
@@ -69,8 +70,27 @@ def _place_new(state: FusionState, node: NodeState, reading: Node) -> None:
         place(state, node, reading.t, reading.position_m, (sigma, sigma, sigma))
 
 
+class Entered(NamedTuple):
+    """Since when somebody is followed whom readings have found, and what was known of him without them.
+
+    Attributes:
+        t: epoch of the first of them (s).
+        position_m: east, north, up (m).
+        sigma: standard deviation of each (m).
+    """
+
+    t: float
+    position_m: Sequence[float]
+    sigma: Sequence[float]
+
+
 def place(
-    state: FusionState, node: NodeState, t: float, position_m: Sequence[float] | Array, sigma: Sequence[float]
+    state: FusionState,
+    node: NodeState,
+    t: float,
+    position_m: Sequence[float] | Array,
+    sigma: Sequence[float],
+    entered: Entered | None = None,
 ) -> None:
     """Decide an undecided node's position by a prior: static nodes stay there, the others begin to move.
 
@@ -80,6 +100,7 @@ def place(
         t: epoch of the position.
         position_m: east, north, up (m).
         sigma: standard deviation of each (m).
+        entered: of who moves, where readings have told the position: the window is solved with them.
     """
     floored = [max(s, physics.SIGMA_FLOOR_M) for s in sigma]
     state.graph.add_node(node.position, position_m, floored)
@@ -88,7 +109,8 @@ def place(
     east, north, up = (float(c) for c in position_m)
     if node.role in MOVING_ROLES:
         uav = float(node.role == "uav")
-        state.ledger.add("begins", t, node.index, 0.0, uav, east, north, up, *floored, 0.0, 0.0)
+        since = Entered(t, (east, north, up), floored) if entered is None else entered
+        state.ledger.add("begins", since.t, node.index, 0.0, uav, *since.position_m, *since.sigma, 0.0, 0.0)
         across, upwards = physics.SPEED_SIGMA_MPS[node.role]
         state.graph.add_node(node.velocity, (0.0, 0.0, 0.0), (across, across, upwards))
         state.nodes[node.node] = replace(node, mode="free", pose_t=t, t=max(t, node.t))

@@ -185,3 +185,9 @@ UNDECIDED_UP_SIGMA_M = 3.0
 UNDECIDED_MOVING_UP_SIGMA_M = 1.5
 MOVING_SIGHTINGS_S = 3.0
 SIGHTINGS_S = 900.0
+UNSEEN_S = 10.0
+"""Who moves and has been heard for so long is shown where he may be, decided or not: twice as long as a
+velocity is remembered. What is older tells little of where he is."""
+REACH_M = 100.0
+"""Who hears a radio is so far from it, along each axis, for all that is known without what he hears: inside,
+radios that locate reach some tens of metres, in the open a hundred and more."""

@@ -40,6 +40,16 @@ class Sightings(NamedTuple):
     alike: Array
 
 
+def heard_between(state: FusionState, node: NodeState) -> tuple[float, float]:
+    """Epochs of the first and the last range or signal of a node that the ledger holds (s).
+
+    Without any, the first is at plus, the last at minus infinity.
+    """
+    pairs = state.ledger.table("pairs")
+    own = (pairs[:, 1] <= RSSI) & ((pairs[:, 2] == node.index) | (pairs[:, 3] == node.index))
+    return float(pairs[own, 0].min(initial=np.inf)), float(pairs[own, 0].max(initial=-np.inf))
+
+
 def of_node(state: FusionState, node: NodeState, since_t: float) -> Sightings | None:
     """The sightings of a node by the technology that saw it most, ranges first; None where there are none."""
     pairs = state.ledger.table("pairs")

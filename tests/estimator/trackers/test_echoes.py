@@ -64,7 +64,7 @@ def begun_at(scatter_m: float) -> Vector3 | None:
         Node(t=0.0, node=name, role="anchor", position_m=(*place, 0.0)) for name, place in CORNERS_M.items()
     ]
     readings.append(Node(t=0.0, node="f", role="responder"))
-    for k in range(15):
+    for k in range(25):
         name = f"a{k % 4}"
         range_m = math.dist(HERE_M, CORNERS_M[name])
         if name == "a2":
