@@ -72,7 +72,7 @@ def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None
             covariance = state.graph.covariance()
         rows = state.graph.rows(states)
         chosen = _choose(state, node, sightings, state.graph.value(states).copy(), covariance[rows, rows])
-        if chosen is not None and (late or chosen.sure):
+        if chosen is not None and (chosen.sure or (late and _is_place(sightings, chosen.mode))):
             _begin(state, node, sightings, chosen, since_t)
             covariance = None
 
@@ -140,6 +140,15 @@ def _odd_cost(mode: Mode, sought: Sought, alike: Array, outliers: float) -> floa
     return float(costs.sum() + 0.5 * (off @ np.linalg.solve(sought.extra_covariance, off) + up**2))
 
 
+def _is_place(seen: Sightings, mode: Mode) -> bool:
+    """Whether a mode is a place at all: about one radio everybody's may be anywhere on its ring.
+
+    A covariance is linear, and would be sure of the side on which somebody is shown.
+    """
+    off_m = np.hypot(*(seen.points[:, :2] - mode.position_m[:2]).T)
+    return bool(mode.sigma_m < off_m.max())
+
+
 def _walked_m(node: NodeState, s: Array) -> Array:
     """How far along each axis one may walk in times, m (m)."""
     speed_mps, _ = physics.SPEED_SIGMA_MPS[node.role]
@@ -166,7 +175,11 @@ def _begin(state: FusionState, node: NodeState, seen: Sightings, chosen: Chosen,
         return
     # Until the window is solved, which is at once, what the sightings tell stands in the filter.
     farthest_m = float(np.hypot(*(seen.points[:, :2] - mode.position_m[:2]).T).max())
-    reach_m = max(physics.REACH_M, farthest_m)
+    if seen.kind == RANGE:
+        # On a ring nobody is farther from its radio than its radius.
+        reach_m = farthest_m + float(_walked_m(node, np.array([t - since_t]))[0])
+    else:
+        reach_m = max(physics.REACH_M, farthest_m)
     centre = (*seen.points[:, :2].mean(axis=0).tolist(), chosen.up_m)
     entered = Entered(since_t, centre, (reach_m, reach_m, chosen.up_sigma_m))
     sigma_m = min(mode.sigma_m, reach_m)
