@@ -19,6 +19,7 @@ from estimator.fusion.modes import Mode, Sought, costs_of, find_modes, short_cos
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.pairs import path_loss_states, technology_states
 from estimator.fusion.sightings import Sightings, heard_between, of_node
+from estimator.fusion.silence import gone_m2
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements.node import MOVING_ROLES
@@ -63,7 +64,8 @@ def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None
         if moving:
             kept_s = physics.UNSEEN_S if late else physics.MOVING_SIGHTINGS_S
         sightings = of_node(state, node, state.newest_t - kept_s)
-        if sightings is None or (not late and len(sightings.t) < physics.SIGHTINGS_MIN):
+        least = physics.UNSEEN_SIGHTINGS_MIN if late else physics.SIGHTINGS_MIN
+        if sightings is None or len(sightings.t) < least:
             continue
         owner = state.sources[sightings.source]
         ranged = sightings.kind == RANGE
@@ -145,16 +147,18 @@ def _is_place(seen: Sightings, mode: Mode) -> bool:
 
     A covariance is linear, and would be sure of the side on which somebody is shown.
     """
-    off_m = np.hypot(*(seen.points[:, :2] - mode.position_m[:2]).T)
-    return bool(mode.sigma_m < off_m.max())
+    return mode.sigma_m < _farthest_m(seen, mode)
+
+
+def _farthest_m(seen: Sightings, mode: Mode) -> float:
+    """From a mode to the farthest place that was measured from (m)."""
+    return float(np.hypot(*(seen.points[:, :2] - mode.position_m[:2]).T).max())
 
 
 def _walked_m(node: NodeState, s: Array) -> Array:
     """How far along each axis one may walk in times, m (m)."""
-    speed_mps, _ = physics.SPEED_SIGMA_MPS[node.role]
-    memory_s = physics.SPEED_MEMORY_S[node.role]
-    x = s / memory_s
-    return np.asarray(speed_mps * memory_s * np.sqrt(2.0 * np.maximum(x + np.expm1(-x), 0.0)))
+    speed_mps, memory_s = physics.SPEED_SIGMA_MPS[node.role][0], physics.SPEED_MEMORY_S[node.role]
+    return np.sqrt([gone_m2(speed_mps, memory_s, each_s, 0.0) for each_s in s.tolist()])
 
 
 def _db_per_m(dbm: Array, path_loss: Array) -> Array:
@@ -174,7 +178,7 @@ def _begin(state: FusionState, node: NodeState, seen: Sightings, chosen: Chosen,
         place(state, node, t, here, (NO_PRIOR_SIGMA_M, NO_PRIOR_SIGMA_M, chosen.up_sigma_m))
         return
     # Until the window is solved, which is at once, what the sightings tell stands in the filter.
-    farthest_m = float(np.hypot(*(seen.points[:, :2] - mode.position_m[:2]).T).max())
+    farthest_m = _farthest_m(seen, mode)
     if seen.kind == RANGE:
         # On a ring nobody is farther from its radio than its radius.
         reach_m = farthest_m + float(_walked_m(node, np.array([t - since_t]))[0])

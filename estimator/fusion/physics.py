@@ -188,6 +188,8 @@ SIGHTINGS_S = 900.0
 UNSEEN_S = 10.0
 """Who moves and has been heard for so long is shown where he may be, decided or not: twice as long as a
 velocity is remembered. What is older tells little of where he is."""
+UNSEEN_SIGHTINGS_MIN = 4
+"""So many readings of these seconds it takes: three tell a place, and one speaks against a wrong one."""
 REACH_M = 100.0
 """Who hears a radio is so far from it, along each axis, for all that is known without what he hears: inside,
 radios that locate reach some tens of metres, in the open a hundred and more."""

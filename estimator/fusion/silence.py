@@ -24,7 +24,12 @@ def wandered_m2(span_s: float, since_s: float) -> float:
         span_s: how long the part lasts (s).
         since_s: how long the silence has lasted before it (s); infinite: nobody knows.
     """
-    memory = physics.SILENT_MEMORY_S
+    return gone_m2(physics.SILENT_SPEED_MPS, physics.SILENT_MEMORY_S, span_s, since_s)
+
+
+@njit(cache=True)
+def gone_m2(speed_mps: float, memory_s: float, span_s: float, since_s: float) -> float:
+    """The same of any usual speed along an axis, and any time in which it is forgotten (m²)."""
     span = min(max(span_s, 0.0), LONGEST_S)
-    started = memory * math.exp(-since_s / memory) * -math.expm1(-span / memory)
-    return max(2.0 * physics.SILENT_SPEED_MPS**2 * memory * (span - started), LEAST_M2)
+    started = memory_s * math.exp(-since_s / memory_s) * -math.expm1(-span / memory_s)
+    return max(2.0 * speed_mps**2 * memory_s * (span - started), LEAST_M2)
