@@ -21,7 +21,8 @@ from estimator.smoothing.solve import Problem
 from estimator.smoothing.turns import all_round, facing, reports_from, turns_whole
 
 COMPANY = 3
-"""So many go along at most, those who hear him, or each other, most."""
+"""So many go along, or not, one by one: those who hear him, or each other, most. Of others only units that
+may face anything do, all at once: the map as a whole may be mirrored."""
 MOMENTS = 2
 """So many moments at which each of them may have changed sides, and one more: the last."""
 HEADINGS = 2
@@ -54,12 +55,17 @@ def company(problem: Problem, index: int, loose: Loose) -> list[int]:
     np.add.at(heard, (between[:, 0], between[:, 1]), 1)
     heard += heard.T
     found = [index]
-    while len(found) <= COMPANY:
-        others = [j for j in loose if j not in found and heard[j, found].any()]
+    while True:
+        others = [
+            j
+            for j in loose
+            if j not in found
+            and heard[j, found].any()
+            and (len(found) <= COMPANY or _turns_from_first(layout, j))
+        ]
         if not others:
-            break
+            return found[1:]
         found.append(max(others, key=lambda j: int(heard[j, found].sum())))
-    return found[1:]
 
 
 def costed(
@@ -84,12 +90,16 @@ def costed(
     found = [told(flip), *_lowest(turned)]
     for alone in list(found):
         joined = best = alone
-        for j in others:
+        for j in others[:COMPANY]:
             joins = _joins(layout, x, index, joined.flip, j, loose[j])
             options = [told(joined.flip._replace(along=(*joined.flip.along, (j, one)))) for one in joins]
             if options:
                 joined = min(options, key=lambda one: one.cost)
                 best = min(best, joined, key=lambda one: one.cost)
+        rest = [_joins(layout, x, index, joined.flip, j, loose[j]) for j in others[COMPANY:]]
+        for same in zip(*rest, strict=True):
+            whole = (*joined.flip.along, *zip(others[COMPANY:], same, strict=True))
+            best = min(best, told(joined.flip._replace(along=whole)), key=lambda one: one.cost)
         if best is not alone:
             found.append(best)
     return found
@@ -131,7 +141,7 @@ def _joins(
         turnable = walk.way is not None and walk.node.turned
         since = reports_from(layout, other) if turnable else walk.first
         led = way_m[walk.last] - way_m[since]
-        if turnable and since == walk.first:
+        if _turns_from_first(layout, other):
             found.append(Flip(since, facing(way_m[since], _turn_of(image, led))))
             continue
         jumps_m = np.hypot(*(image.of(way_m) - way_m).T)
@@ -152,6 +162,12 @@ def _shared(layout: Layout, x: Array, index: int, flip: Flip) -> list[Image]:
     led = way_m[layout.walks[index].last] - way_m[flip.since]
     towards = float(np.arctan2(led[1], led[0])) + 0.5 * image.turned_rad
     return [mirrored(way_m[flip.since], towards), plain]
+
+
+def _turns_from_first(layout: Layout, index: int) -> bool:
+    """Whether a unit that may face anything has led somebody all the way."""
+    walk = layout.walks[index]
+    return walk.way is not None and walk.node.turned and reports_from(layout, index) == walk.first
 
 
 def _is_late(layout: Layout, index: int, since: int, loose: NDArray[np.bool_]) -> bool:

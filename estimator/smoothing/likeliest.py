@@ -21,7 +21,7 @@ from estimator.smoothing.otherwise import Mode, same_now
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
 from estimator.smoothing.tried import SAME_RAD, Asked, Begun, Tried, heading
-from estimator.smoothing.turns import faced, reports_from, turns
+from estimator.smoothing.turns import asked_again, each_time, faced, reports_from, turns, turns_whole
 
 LEAST_TRIED, WAYS = 2, 3
 """So many images of each way are solved at least; beyond so many ways it is fewer for each."""
@@ -58,13 +58,15 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
         effort: how much is asked.
     """
     problem, solved, before = earlier(problem, solved)
+    again = asked_again(problem)
     # Where nobody was known before, hardly anything tells yet.
     new = any(_is_new(problem.layout, i) for i in range(len(problem.layout.walks)))
     for _ in range(effort.rounds):
         modes, alike, entered = list(before), new or bool(before), solved
         led = _loose(problem, solved)
-        most = max(effort.tried * WAYS // max(len(led), WAYS), LEAST_TRIED)
-        for i in led:
+        asked = _asked(problem, led, again, effort)
+        most = max(effort.tried * WAYS // max(len(asked), WAYS), LEAST_TRIED)
+        for i in asked:
             solved, others, open_ = _judged(problem, solved, i, led, effort._replace(tried=most))
             # Those who change sides together are found at the image of each of them.
             modes += [m for m in others if not any(same_now(problem.layout, m.x, k.x) for k in modes)]
@@ -81,6 +83,13 @@ def _is_new(layout: Layout, index: int) -> bool:
     walk = layout.walks[index]
     entered_t = float(layout.times[walk.first, index])
     return walk.begins and walk.way is None and float(layout.grid[-1]) - entered_t < RECENT_S
+
+
+def _asked(problem: Problem, loose: Loose, again: list[int], effort: Effort) -> list[int]:
+    """Of whom it is asked where he is: of those whose heading was found some each time, by the clock."""
+    found = [i for i in again if not loose[i].any()]
+    some = each_time(problem.layout, found, WAYS if effort.whole else 1)
+    return [i for i in loose if i in some or i not in found]
 
 
 def _loose(problem: Problem, solved: Solved) -> Loose:
@@ -108,7 +117,8 @@ def _judged(
         # Each way before has several headings since.
         effort = effort._replace(tried=effort.tried * 3 // 2)
         found += turns(heard, way_m, walk, reports_from(layout, index))
-    begun = _begun(problem, solved.x, index, loose, _again(layout, solved.x, index, own), found)
+    known = _again(layout, solved.x, index, own)
+    begun = _begun(problem, solved.x, index, loose, known, found, effort.whole)
     best, *others = _solutions(problem, solved, index, loose, begun, effort)
     modes = _modes(layout, best, others, index, loose)
     last = bool(own[walk.last - 1])
@@ -146,7 +156,13 @@ def _turned_by(layout: Layout, x: Array, index: int) -> float:
 
 
 def _begun(
-    problem: Problem, x: Array, index: int, loose: Loose, again: list[Flip], new: list[Flip]
+    problem: Problem,
+    x: Array,
+    index: int,
+    loose: Loose,
+    again: list[Flip],
+    new: list[Flip],
+    whole: bool,
 ) -> list[Flip]:
     """Images to begin from: the cheapest of each that is known, then new ones that do not cost far too much.
 
@@ -157,6 +173,7 @@ def _begun(
         loose: see `imaged.Loose`.
         again: images that were likely when the window was last solved.
         new: others.
+        whole: where he was at any time, not only where he is now.
     """
     others, most = company(problem, index, loose), problem.at(x).cost + FAR
     best, found = [], list[Costed]()
@@ -169,7 +186,11 @@ def _begun(
     for flip in new:
         found += costed(problem, x, index, loose, flip, others)
     found.sort(key=lambda one: one.cost)
-    return [*best, *(one.flip for one in found if one.cost < most)]
+    # A long way that is turned as a whole is far off at its end, however well it fits once it is solved.
+    node = problem.layout.walks[index].node
+    long = whole or not problem.layout.state.nodes[node.node].turned
+    near = [one for one in found if one.cost < most or (long and turns_whole(one.flip.image))]
+    return [*best, *(one.flip for one in near)]
 
 
 def _solutions(

@@ -13,6 +13,7 @@ from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
 from estimator.smoothing.flips import Flip, Heard, radios_of
 from estimator.smoothing.layout import Layout, Walk
+from estimator.smoothing.solve import Problem
 
 SAME = 1e-6
 """Epochs (s) and turns (rad) nearer to each other than this are the same."""
@@ -30,6 +31,41 @@ def reports_from(layout: Layout, index: int) -> int:
         return walk.first
     times = layout.times[walk.first : walk.last, index]
     return walk.first + int(np.searchsorted(times, walk.way.begin_t - SAME))
+
+
+def asked_again(problem: Problem) -> list[int]:
+    """Let units face anything again of which it was found, as long as a window knows all that told it.
+
+    What was heard by chance may have spoken for the wrong side, and what is heard later against it.
+
+    Args:
+        problem: of the window; these walks may face anything in it.
+
+    Returns:
+        Their indices.
+    """
+    layout, begins = problem.layout, problem.layout.state.ledger.table("begins")
+    known = () if problem.prior is None else problem.prior.keys
+    unsure = begins[(begins[:, 2] == 1.0) & (begins[:, 11] > physics.TURNED_SIGMA_RAD), 1]
+    found = []
+    for i, walk in enumerate(layout.walks):
+        asked = walk.node.moving and not walk.node.turned and walk.number in unsure
+        if asked and ("walk", walk.number) not in known:
+            layout.walks[i] = walk._replace(node=replace(walk.node, turned=True))
+            found.append(i)
+    return found
+
+
+def each_time(layout: Layout, walks: list[int], most: int) -> list[int]:
+    """So many of some walks, by the clock: at the next times others.
+
+    Args:
+        layout: of the window.
+        walks: their indices.
+        most: how many of them.
+    """
+    first = int(layout.grid[-1]) % max(len(walks), 1)
+    return (walks[first:] + walks[:first])[:most]
 
 
 def turns(heard: Heard, way_m: Array, walk: Walk, since: int) -> list[Flip]:

@@ -38,7 +38,7 @@ from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
 from estimator.smoothing.tried import SAME_RAD
 from estimator.smoothing.turned import turned
-from estimator.smoothing.turns import all_round, facing, reports_from, to_other_sides, turn
+from estimator.smoothing.turns import all_round, each_time, facing, reports_from, to_other_sides, turn
 
 PERIOD_S = 8.0
 SOONEST_S = 3.0
@@ -59,6 +59,8 @@ ITERATIONS = 4
 RESTING = 0.1
 """A window that gains less in log likelihood is solved again soon anyway."""
 TURN_ITERATIONS = 8
+TURNED = 4
+"""Of so many units that may face anything all turns are solved each time, of others the next times."""
 
 
 def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
@@ -174,10 +176,9 @@ def _best(problem: Problem, x: Array) -> Solved:
     free = any(walk.way is None for walk in layout.walks)
     slacks = SLACKS_M if free else ()
     best = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING)
-    for i, walk in enumerate(layout.walks):
-        if not layout.state.nodes[walk.node.node].turned:
-            continue
-        since = reports_from(layout, i)
+    unsure = [i for i, walk in enumerate(layout.walks) if layout.state.nodes[walk.node.node].turned]
+    for i in each_time(layout, unsure, TURNED):
+        walk, since = layout.walks[i], reports_from(layout, i)
         for angle in all_round():
             there = best.x.copy()
             places = layout.states(there, i)[since : walk.last + 1, :2]
@@ -204,13 +205,15 @@ def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
 
 
 def _judge_turns(problem: Problem, solved: Solved, found: Array) -> None:
-    """A unit whose heading has been found is not tried all round any more."""
+    """A unit whose heading has been found is not tried all round any more, unless another one fits again."""
     layout = problem.layout
     for i, walk in enumerate(layout.walks):
         node = layout.state.nodes[walk.node.node]
         sigma = float(np.sqrt(max(found[walk.last, i, 3, 3], 0.0)))
         one_of_two = any(other.image.turned_rad != 0.0 for other in node.otherwise)
         sure = sigma < physics.TURNED_SIGMA_RAD and not one_of_two
+        if one_of_two and not node.turned:
+            layout.state.nodes[node.node] = replace(node, turned=True)
         if node.turned and sure and not _in_line(problem, solved, i):
             layout.state.nodes[node.node] = replace(node, turned=False)
 

@@ -126,6 +126,17 @@ def after_a_unit(side: float) -> Ways:
     }
 
 
+def a_crew(side: float, turning: bool = False) -> Ways:
+    """Six fan out straight to one side, by units that may face anything; then all of them may turn back."""
+    ends_m = [(10.0, 30.0), (20.0, 24.0), (28.0, 16.0), (30.0, 6.0), (24.0, -4.0), (16.0, -14.0)]
+    ways = {}
+    for i, (east_m, north_m) in enumerate(ends_m):
+        way = through((0.0, 1.0 + i), (side * east_m, north_m))[:20]
+        back_m = (float(way[-1, 0]) - side * 6.0, float(way[-1, 1]) + 14.0)
+        ways[f"ff{i}"] = np.concatenate([way, through((way[-1, 0], way[-1, 1]), back_m)]) if turning else way
+    return ways
+
+
 def across_together(side: float) -> Ways:
     """Two without units stay on the line through two radios, and leave it to the same side."""
     return {
@@ -151,9 +162,25 @@ def test_who_follows_a_unit_that_may_face_anything_may_be_on_either_side_as_he_m
 
 
 @pytest.mark.parametrize("side", SIDES)
+def test_a_whole_crew_may_be_on_either_side_of_its_radio(side: float) -> None:
+    """Ranges hold all of them together: the image of one alone is contradicted by the five others."""
+    ways = a_crew(side)
+    found = shown(readings_of(ways, ONE, dict.fromkeys(ways, 0)))
+    assert all(is_told_on_either_side(found[who], way[-1], 0) for who, way in ways.items())
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_a_crew_that_turns_is_on_the_side_to_which_it_turns(side: float) -> None:
+    ways = a_crew(side, turning=True)
+    found = shown(readings_of(ways, ONE, dict.fromkeys(ways, 0)))
+    assert max(np.hypot(*off_and_said(found[who], way[-1])[0]) for who, way in ways.items()) < 3.0
+
+
+@pytest.mark.parametrize("side", SIDES)
 def test_another_radio_tells_the_side_of_both(side: float) -> None:
+    """They began three metres beside the line through both radios: the image in it began six metres off."""
     ways = {who: np.concatenate([way, resting(way[-1], 20)]) for who, way in after_a_unit(side).items()}
-    third = readings_of(ways, ONE | {"a1": (10.0, 50.0)}, {"ff1": 0})
+    third = readings_of(ways, ONE | {"a1": (25.0, -5.0)}, {"ff1": 0})
     late_s = third[-1].t - 18.0
     found = shown([r for r in third if not heard(r, "a1") or r.t > late_s])
     for who, way in ways.items():
