@@ -186,9 +186,10 @@ def _begun(
     for flip in new:
         found += costed(problem, x, index, loose, flip, others)
     found.sort(key=lambda one: one.cost)
-    # A long way that is turned as a whole is far off at its end, however well it fits once it is solved.
-    node = problem.layout.walks[index].node
-    long = whole or not problem.layout.state.nodes[node.node].turned
+    # A way of minutes that is turned as a whole is far off at its end, however well it fits once solved: that
+    # of a whole incident, and that of a unit whose heading was found before.
+    walked = problem.layout.walks[index].node.node
+    long = whole or not problem.layout.state.nodes[walked].turned
     near = [one for one in found if one.cost < most or (long and turns_whole(one.flip.image))]
     return [*best, *(one.flip for one in near)]
 
