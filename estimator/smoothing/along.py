@@ -81,10 +81,11 @@ def costed(
         flip: the image.
         others: who may go along.
     """
-    layout = problem.layout
+    layout, motions = problem.layout, problem.motions(x)
 
     def told(one: Flip) -> Costed:
-        return Costed(problem.at(imaged(layout, x, index, one, loose)).cost, one)
+        beside = problem.beside({index, *(i for i, _ in one.along)}, motions)
+        return Costed(beside.at(imaged(layout, x, index, one, loose)).cost, one)
 
     turned = [told(flip._replace(image=image)) for image in _faced(layout, x, index, flip, loose)]
     found = [told(flip), *_lowest(turned)]

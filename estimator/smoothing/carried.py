@@ -1,5 +1,6 @@
 """What has left the window, laid on its unknowns: the prior of its first keyframe and of the border."""
 
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -60,7 +61,6 @@ class Carried:
         if len(gone):
             # Held where they were, they would not let the map turn.
             self._matrix, self._vector = marginalised(prior.matrix, prior.vector, gone, kept)
-        self._shared: list[Shared] = []
         changed = _turning(prior, at, kept)
         self._places, self._speeds = changed.places, changed.speeds
         base_m = np.array(layout.state.base_place()[:2])
@@ -91,15 +91,19 @@ class Carried:
         columns = np.where(self._at < self._size, self._at, self._at - self._size + self._width)
         return np.ascontiguousarray(columns[np.argwhere(tied)], dtype=np.int64)
 
-    def add(self, chain: Chain, x: Array) -> None:
-        """Add it to the normal equations at an estimate, flat; the chain always has the same groups."""
+    def add(self, chain: Chain, shared: Sequence[Shared], x: Array) -> None:
+        """Add it to the normal equations at an estimate.
+
+        Args:
+            chain: takes it.
+            shared: what each group of the chain has in common with it.
+            x: the estimate, flat.
+        """
         turned_by, matrix = self._turned_by(x), self._matrix.copy()
         vector, by = self._vector - matrix @ self._moved(x, turned_by), np.empty((len(self._turning), 2, 2))
         by[:] = turning(turned_by)
         change_pairs(matrix, vector, self._turning, by)
-        if not self._shared:
-            self._shared = [self._shared_with(strand.group) for strand in chain.strands]
-        for strand, (moving, lasting, own, rest) in zip(chain.strands, self._shared, strict=True):
+        for strand, (moving, lasting, own, rest) in zip(chain.strands, shared, strict=True):
             if len(strand.group.walks):
                 strand.diagonal[0][own[:, None], own] += matrix[moving[:, None], moving]
                 strand.border[0][own[:, None], rest] += matrix[moving[:, None], lasting]
@@ -108,10 +112,14 @@ class Carried:
                 strand.corner[rest[:, None], rest] += matrix[lasting[:, None], lasting]
                 strand.corner_gradient[rest] += vector[lasting]
 
-    def _shared_with(self, group: Group) -> Shared:
-        moving, own = _common(self._at, group.columns)
-        lasting, rest = _common(self._at - self._size, group.lasting)
-        return Shared(moving, lasting, own, rest)
+    def shared(self, groups: Iterable[Group]) -> list[Shared]:
+        """What it and each of some groups of walks have in common."""
+        found = []
+        for group in groups:
+            moving, own = _common(self._at, group.columns)
+            lasting, rest = _common(self._at - self._size, group.lasting)
+            found.append(Shared(moving, lasting, own, rest))
+        return found
 
     def _turned_by(self, x: Array) -> float:
         """By how much the map is turned about the pivot since the prior was linearised (rad)."""

@@ -37,14 +37,14 @@ class Chain:
 
     Attributes:
         strands: the chain of each group; of the last one there is only the border.
-        width: n.
+        width: n, with those of walks that are held, which are in no group and stay where they are.
         lasting: s.
         promised: after `solve`: half the product of the gradient and the step, what a parabola gains by it.
     """
 
-    def __init__(self, length: int, groups: Sequence[Group]) -> None:
+    def __init__(self, length: int, width: int, groups: Sequence[Group]) -> None:
         self.strands = [Strand(length, group) for group in groups]
-        self.width = sum(len(group.columns) for group in groups)
+        self.width = width
         self.lasting = len(groups[-1].lasting)
         self.promised = 0.0
         self._length = length

@@ -13,24 +13,22 @@ from estimator.fusion.images import Image
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
 from estimator.smoothing.along import Costed, company, costed
-from estimator.smoothing.earlier import CLEARER, ITERATIONS, LEAST, earlier
+from estimator.smoothing.asked import WAYS, asked_again, asked_of
+from estimator.smoothing.earlier import LEAST, earlier
 from estimator.smoothing.flips import LIVE, RECENT_S, Effort, Flip, exposed, flips, heard_by, loose_steps
 from estimator.smoothing.imaged import Loose, imaged, now_of
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.otherwise import Mode, same_now
+from estimator.smoothing.solutions import solutions
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
 from estimator.smoothing.tried import SAME_RAD, Asked, Begun, Tried, heading
-from estimator.smoothing.turns import asked_again, each_time, faced, reports_from, turns, turns_whole
+from estimator.smoothing.turns import faced, reports_from, turns, turns_whole
 
-LEAST_TRIED, WAYS = 2, 3
-"""So many images of each way are solved at least; beyond so many ways it is fewer for each."""
-SOON = 4
-"""Iterations after which an image is given up that is hopeless."""
-FAR, HOPELESS = 600.0, 50.0
-"""What an image costs more, in log likelihood, that is not solved at all, and that is given up."""
-SLACKS_M = (1.0, 0.3, 0.1)
-"""How far off an estimate may be at first whose way nobody has gone: with a unit turned, or others along."""
+LEAST_TRIED = 2
+"""So many images of each way are solved at least, where there are many ways."""
+FAR = 600.0
+"""What an image costs more, in log likelihood, that is not solved at all."""
 
 
 class Judged(NamedTuple):
@@ -41,12 +39,14 @@ class Judged(NamedTuple):
         solved: the likeliest solution.
         modes: the others.
         exposed: an image fits what somebody has heard last as well: he may cross to it unseen.
+        asked: walks of which it was asked where they are, by index: what the others face is still open.
     """
 
     problem: Problem
     solved: Solved
     modes: list[Mode]
     exposed: bool
+    asked: frozenset[int]
 
 
 def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged:
@@ -61,21 +61,24 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
     again = asked_again(problem)
     # Where nobody was known before, hardly anything tells yet.
     new = any(_is_new(problem.layout, i) for i in range(len(problem.layout.walks)))
+    everybody = set[int]()
     for _ in range(effort.rounds):
         modes, alike, entered = list(before), new or bool(before), solved
         led = _loose(problem, solved)
-        asked = _asked(problem, led, again, effort)
+        asked = asked_of(problem, solved, led, again, effort)
+        everybody.update(asked)
         most = max(effort.tried * WAYS // max(len(asked), WAYS), LEAST_TRIED)
         for i in asked:
             solved, others, open_ = _judged(problem, solved, i, led, effort._replace(tried=most))
             # Those who change sides together are found at the image of each of them.
             modes += [m for m in others if not any(same_now(problem.layout, m.x, k.x) for k in modes)]
             alike = alike or open_ or bool(others)
-        if solved is entered:
+        # What was told of the others was told beside somebody at a place where he is not. Where it was not
+        # asked of all who may face anything, it is asked again soon anyway.
+        if solved is entered or len(asked) < len(led) - len(again):
             break
-        # What was told of the others was told beside somebody at a place where he is not.
     problem.rows.widen(solved.x, solved.linear.jacobian)
-    return Judged(problem, solved, modes, alike)
+    return Judged(problem, solved, modes, alike, frozenset(everybody))
 
 
 def _is_new(layout: Layout, index: int) -> bool:
@@ -83,13 +86,6 @@ def _is_new(layout: Layout, index: int) -> bool:
     walk = layout.walks[index]
     entered_t = float(layout.times[walk.first, index])
     return walk.begins and walk.way is None and float(layout.grid[-1]) - entered_t < RECENT_S
-
-
-def _asked(problem: Problem, loose: Loose, again: list[int], effort: Effort) -> list[int]:
-    """Of whom it is asked where he is: of those whose heading was found some each time, by the clock."""
-    found = [i for i in again if not loose[i].any()]
-    some = each_time(problem.layout, found, WAYS if effort.whole else 1)
-    return [i for i in loose if i in some or i not in found]
 
 
 def _loose(problem: Problem, solved: Solved) -> Loose:
@@ -116,10 +112,11 @@ def _judged(
     if walk.node.turned:
         # Each way before has several headings since.
         effort = effort._replace(tried=effort.tried * 3 // 2)
-        found += turns(heard, way_m, walk, reports_from(layout, index))
+        found += turns(problem, heard, way_m, index)
     known = _again(layout, solved.x, index, own)
-    begun = _begun(problem, solved.x, index, loose, known, found, effort.whole)
-    best, *others = _solutions(problem, solved, index, loose, begun, effort)
+    begun = _begun(problem, solved.x, index, loose, known, found)
+    starts = (Begun(imaged(layout, solved.x, index, flip, loose), flip) for flip in begun)
+    best, *others = solutions(Asked(problem, index, effort.whole), solved, starts, effort.tried)
     modes = _modes(layout, best, others, index, loose)
     last = bool(own[walk.last - 1])
     return best.solved, modes, last and exposed(heard, now)
@@ -162,7 +159,6 @@ def _begun(
     loose: Loose,
     again: list[Flip],
     new: list[Flip],
-    whole: bool,
 ) -> list[Flip]:
     """Images to begin from: the cheapest of each that is known, then new ones that do not cost far too much.
 
@@ -173,7 +169,6 @@ def _begun(
         loose: see `imaged.Loose`.
         again: images that were likely when the window was last solved.
         new: others.
-        whole: where he was at any time, not only where he is now.
     """
     others, most = company(problem, index, loose), problem.at(x).cost + FAR
     best, found = [], list[Costed]()
@@ -186,61 +181,9 @@ def _begun(
     for flip in new:
         found += costed(problem, x, index, loose, flip, others)
     found.sort(key=lambda one: one.cost)
-    # A way of minutes that is turned as a whole is far off at its end, however well it fits once solved: that
-    # of a whole incident, and that of a unit whose heading was found before.
-    walked = problem.layout.walks[index].node.node
-    long = whole or not problem.layout.state.nodes[walked].turned
-    near = [one for one in found if one.cost < most or (long and turns_whole(one.flip.image))]
+    # A way of minutes that is turned as a whole is far off at its end, however well it fits once solved.
+    near = [one for one in found if one.cost < most or turns_whole(one.flip.image)]
     return [*best, *(one.flip for one in near)]
-
-
-def _solutions(
-    problem: Problem,
-    solved: Solved,
-    index: int,
-    loose: Loose,
-    begun: list[Flip],
-    effort: Effort,
-) -> list[Tried]:
-    """The solutions that images of a way lead to, that which is to be shown first."""
-    asked = Asked(problem, index, effort.whole)
-    found = [Tried(solved, Flip(0, Image()))]
-    tried: list[Begun] = []
-    for flip in begun:
-        start = Begun(imaged(problem.layout, solved.x, index, flip, loose), flip)
-        if any(asked.same_start(start, other) for other in tried):
-            continue
-        if len(tried) == effort.tried:
-            break
-        tried.append(start)
-        there = _solved(problem, start, found[0].solved.cost + HOPELESS)
-        if there is None:
-            continue
-        new = Tried(there, flip)
-        same = next((k for k, one in enumerate(found) if asked.same(one, new)), None)
-        if same is None:
-            found.append(new)
-        elif there.cost < found[same].solved.cost - CLEARER:
-            found[same] = new._replace(flip=found[same].flip)
-    best = min(found, key=lambda one: one.solved.cost)
-    if best.solved.cost > found[0].solved.cost - CLEARER:
-        best = found[0]
-    return [best, *(one for one in found if one is not best)]
-
-
-def _solved(problem: Problem, start: Begun, most: float) -> Solved | None:
-    """The solution from an image; None where there is none, or it still costs more than `most` soon."""
-    # What others, or what a unit faces, have been turned by is hardly more than a guess.
-    rough = start.flip.along or start.flip.image.turned_rad != 0.0
-    slacks = SLACKS_M if rough else ()
-    try:
-        found = problem.solve(start.x, slacks, len(slacks) + SOON)
-        if found.cost > most:
-            return None
-        return found if found.rests else problem.solve(found.x, iterations=ITERATIONS)
-    except ValueError:
-        # It hangs in the air there.
-        return None
 
 
 def _modes(layout: Layout, best: Tried, others: list[Tried], index: int, loose: Loose) -> list[Mode]:

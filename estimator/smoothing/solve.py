@@ -1,6 +1,8 @@
 """Newton steps over a window: readings, motion and priors at once, robust, until it rests."""
 
+from collections.abc import Collection, Mapping, Sequence
 from copy import copy
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -14,12 +16,13 @@ from estimator.graph.scatter import add_motion
 from estimator.smoothing.bent import add_bends
 from estimator.smoothing.carried import Carried
 from estimator.smoothing.chain import Chain
-from estimator.smoothing.groups import Groups
-from estimator.smoothing.layout import Layout, Walk
+from estimator.smoothing.coupled import Coupled
+from estimator.smoothing.going import Going
+from estimator.smoothing.layout import Layout
 from estimator.smoothing.priors import own_priors
 from estimator.smoothing.rows import Linearised, Rows
 from estimator.smoothing.solved import Solved, There
-from estimator.smoothing.walks import STATES, Free, Motion, free_motions, misfit, reckon, unit_motion
+from estimator.smoothing.walks import STATES, Motion, misfit
 
 ACCEPTED = 1e-3
 """Rise of the negative log likelihood that counts as rounding."""
@@ -44,32 +47,19 @@ class Problem:
         layout: its unknowns.
         rows: its readings.
         prior: what is known from before; None: nothing is.
+        going: how its walks go.
         left_out: rows that do not count.
+        held: walks that are held where they are, by index, and their motion there.
     """
 
     def __init__(self, layout: Layout, rows: Rows, prior: Prior | None) -> None:
         self.layout, self.rows, self.prior = layout, rows, prior
         known = () if prior is None else prior.keys
         self._at, self._mean, self._information = own_priors(layout, known)
-        self._ways = [self._way(i, walk) for i, walk in enumerate(layout.walks)]
+        self.going = Going(layout)
         self._carried = None if prior is None else Carried(layout, prior)
-        coupled = [rows.columns] if self._carried is None else [rows.columns, self._carried.coupled]
-        self._groups = Groups(layout.width, layout.border, coupled)
         self.left_out: Integers = np.zeros(0, dtype=np.int64)
-        self._placed = self._groups.placed(rows.slab, rows.columns)
-        self._pairs = [part[: np.searchsorted(part, len(rows.pairs))] for part in self._placed.parts]
-        size, width = layout.length * layout.width, max(layout.width, 1)
-        slab = np.where(self._at < size, self._at // width, 0)
-        columns = np.where(self._at < size, self._at % width, self._at - size + layout.width)
-        self._known, self._ones = self._groups.placed(slab, columns[:, None]), np.ones((len(slab), 1))
-
-    def _way(self, index: int, walk: Walk) -> tuple[Array, Array | Free]:
-        """Times between a walk's keyframes, and what lies between them wherever they are."""
-        times = self.layout.times[walk.first : walk.last + 1, index]
-        durations = np.diff(times)
-        if walk.way is None:
-            return durations, free_motions(walk.node.role, durations)
-        return durations, walk.way.between(times[:-1], times[1:])
+        self.held: Mapping[int, Motion] = {}
 
     def without(self, left_out: Integers) -> Self:
         """The same problem without some of its rows; the rows themselves are shared."""
@@ -77,30 +67,26 @@ class Problem:
         other.left_out = left_out
         return other
 
+    def beside(self, moving: Collection[int], motions: Sequence[Motion]) -> Self:
+        """The same problem with all walks but some held where they are: it has their ways and their cost.
+
+        Args:
+            moving: indices of those that are not held.
+            motions: each walk's motion there.
+        """
+        other = copy(self)
+        other.held = {i: motion for i, motion in enumerate(motions) if i not in moving}
+        vars(other).pop("coupled", None)
+        return other
+
+    @cached_property
+    def coupled(self) -> Coupled:
+        """How its unknowns hang together."""
+        return Coupled(self.layout, self.rows, self._at, self._carried, self.held)
+
     def motions(self, x: Array) -> list[Motion]:
         """Each walk's motion at an estimate."""
-        layout = self.layout
-        keyframes = x[: layout.length * layout.width].reshape(layout.length, layout.width)
-        found = []
-        for i, (walk, (durations, between)) in enumerate(zip(layout.walks, self._ways, strict=True)):
-            states = keyframes[walk.first : walk.last + 1, STATES * i : STATES * (i + 1)].copy()
-            if isinstance(between, Free):
-                found.append(between.motion(states))
-            else:
-                found.append(unit_motion(between, durations, states))
-        return found
-
-    def reckoned(self, x: Array, since_t: float) -> Array:
-        """An estimate whose units have gone their own way since an epoch, flat."""
-        layout, there = self.layout, x.copy()
-        keyframes = there[: layout.length * layout.width].reshape(layout.length, layout.width)
-        for i, (walk, (durations, between)) in enumerate(zip(layout.walks, self._ways, strict=True)):
-            if not isinstance(between, Free):
-                times = layout.times[walk.first : walk.last + 1, i]
-                known = max(int(np.searchsorted(times, since_t, side="right")) - 1, 0)
-                states = keyframes[walk.first : walk.last + 1, STATES * i : STATES * (i + 1)]
-                reckon(states, between, durations, known)
-        return there
+        return self.going.motions(x, self.held)
 
     def cost(self, x: Array, residual: Array, motions: list[Motion]) -> float:
         """Negative log likelihood up to a constant: mixtures of the readings, motion, priors."""
@@ -166,9 +152,11 @@ class Problem:
         """
         layout, rows = self.layout, self.rows
         length = layout.length if until is None else until + 1
-        chain = Chain(length, self._groups.each)
+        chain = Chain(length, layout.width, self.coupled.groups)
         for i, (walk, motion) in enumerate(zip(layout.walks, motions, strict=True)):
-            group, block = self._groups.home(i)
+            if i in self.held:
+                continue
+            group, block = self.coupled.home(i)
             strand = chain.strands[group]
             own = slice(STATES * block, STATES * (block + 1))
             count = max(min(walk.last, length - 1) - walk.first, 0)
@@ -186,17 +174,17 @@ class Problem:
                 strand.wide,
             )
         if self._carried is not None:
-            self._carried.add(chain, x)
-        placed, information = self._placed, weighted.information
-        known, certain = self._known, self._information
+            self._carried.add(chain, self.coupled.shared, x)
+        placed, information = self.coupled.rows, weighted.information
+        known, certain = self.coupled.priors, self._information
         if until is not None:
             information = np.where(rows.t < layout.grid[until], information, 0.0)
             certain = np.where(known.slab <= until, certain, 0.0)
             placed = placed._replace(slab=np.minimum(placed.slab, until))
             known = known._replace(slab=np.minimum(known.slab, until))
-        off = self._mean - x[self._at]
+        off, ones = self._mean - x[self._at], np.ones((len(self._at), 1))
         for strand, priors, readings in zip(chain.strands, known.parts, placed.parts, strict=True):
-            strand.add(known, priors, self._ones, certain, off)
+            strand.add(known, priors, ones, certain, off)
             strand.add(placed, readings, linear.jacobian, information, weighted.residual)
         return chain
 
@@ -236,9 +224,9 @@ class Problem:
             weighted: how the rows are weighed.
             signed: negative curvature too; see `bent.add_bends`.
         """
-        rows, placed = self.rows, self._placed
+        rows, placed = self.rows, self.coupled.rows
         told = x, weighted.information, weighted.residual, signed, placed.slab, placed.columns
-        for strand, part in zip(chain.strands, self._pairs, strict=True):
+        for strand, part in zip(chain.strands, self.coupled.pairs, strict=True):
             if len(part):
                 add_bends(rows.readings, part, *told, strand.diagonal, strand.wide, strand.corner)
 

@@ -1,5 +1,6 @@
 """Estimates that an image of somebody's way leads to, and which of them are the same."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -80,6 +81,10 @@ class Asked(NamedTuple):
             return False
         most = max(first.solved.cost, second.solved.cost) + PARTED
         return self.problem.at(self._between(one, other, apart_rad)).cost < most
+
+    def among(self, found: Sequence[Tried], new: Tried) -> int | None:
+        """Which of some solutions another one is; None: none of them."""
+        return next((k for k, one in enumerate(found) if self.same(one, new)), None)
 
     def _apart_rad(self, one: Begun, other: Begun) -> float:
         """By how much the other's heading is to the left of the one's (rad)."""

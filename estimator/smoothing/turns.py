@@ -33,53 +33,20 @@ def reports_from(layout: Layout, index: int) -> int:
     return walk.first + int(np.searchsorted(times, walk.way.begin_t - SAME))
 
 
-def asked_again(problem: Problem) -> list[int]:
-    """Let units face anything again of which it was found, as long as a window knows all that told it.
-
-    What was heard by chance may have spoken for the wrong side, and what is heard later against it.
-
-    Args:
-        problem: of the window; these walks may face anything in it.
-
-    Returns:
-        Their indices.
-    """
-    layout, begins = problem.layout, problem.layout.state.ledger.table("begins")
-    known = () if problem.prior is None else problem.prior.keys
-    unsure = begins[(begins[:, 2] == 1.0) & (begins[:, 11] > physics.TURNED_SIGMA_RAD), 1]
-    found = []
-    for i, walk in enumerate(layout.walks):
-        asked = walk.node.moving and not walk.node.turned and walk.number in unsure
-        if asked and ("walk", walk.number) not in known:
-            layout.walks[i] = walk._replace(node=replace(walk.node, turned=True))
-            found.append(i)
-    return found
-
-
-def each_time(layout: Layout, walks: list[int], most: int) -> list[int]:
-    """So many of some walks, by the clock: at the next times others.
-
-    Args:
-        layout: of the window.
-        walks: their indices.
-        most: how many of them.
-    """
-    first = int(layout.grid[-1]) % max(len(walks), 1)
-    return (walks[first:] + walks[:first])[:most]
-
-
-def turns(heard: Heard, way_m: Array, walk: Walk, since: int) -> list[Flip]:
+def turns(problem: Problem, heard: Heard, way_m: Array, index: int) -> list[Flip]:
     """Turns of a unit's whole way in a window about where it begins.
 
     Args:
-        heard: what its bearer has heard.
+        problem: of the window.
+        heard: what its bearer has heard of what stands, and his fixes.
         way_m: where he was at each keyframe, k × 2 (m).
-        walk: the walk.
-        since: the keyframe at which it begins.
+        index: of the walk.
     """
-    sides = to_other_sides(heard, way_m, walk, since)
-    # Where nothing tells one heading from another, they are no few, and his covariance knows all of them.
-    angles = [*reversed(sides), *all_round()] if sides else []
+    walk, since = problem.layout.walks[index], reports_from(problem.layout, index)
+    if not len(heard.t) and not (problem.rows.pairs[:, 2:4] == walk.number).any():
+        # Where nothing tells one heading from another, they are no few, and his covariance knows all of them.
+        return []
+    angles = [*reversed(to_other_sides(heard, way_m, walk, since)), *all_round()]
     return [Flip(since, facing(way_m[since], angle)) for angle in angles]
 
 

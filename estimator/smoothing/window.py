@@ -6,6 +6,8 @@ no reading inside the window stays linearised at an estimate that has turned out
 6).
 """
 
+from collections.abc import Collection
+
 import numpy as np
 from msgspec.structs import replace
 
@@ -26,19 +28,20 @@ from estimator.smoothing.extent import (
     trim,
     work,
 )
-from estimator.smoothing.flips import Flip, heard_by
+from estimator.smoothing.flips import heard_by
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.learn import learn
-from estimator.smoothing.likeliest import SLACKS_M, likeliest
+from estimator.smoothing.likeliest import likeliest
 from estimator.smoothing.moved import moved_nodes
 from estimator.smoothing.otherwise import otherwise
 from estimator.smoothing.rows import Rows
 from estimator.smoothing.settle import keep_keyframes, settle
+from estimator.smoothing.solutions import SLACKS_M
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
 from estimator.smoothing.tried import SAME_RAD
 from estimator.smoothing.turned import turned
-from estimator.smoothing.turns import all_round, each_time, facing, reports_from, to_other_sides, turn
+from estimator.smoothing.turns import reports_from, to_other_sides
 
 PERIOD_S = 8.0
 SOONEST_S = 3.0
@@ -55,12 +58,11 @@ EXPOSED = 0.5
 """The same where somebody may have gone to an image of where he seems to be."""
 GONE = 8.0
 """A window this many times as long as it may be is begun anew."""
+MORE = 0.2
+"""Share of what is known that is new where headings are asked about rarely."""
 ITERATIONS = 4
 RESTING = 0.1
 """A window that gains less in log likelihood is solved again soon anyway."""
-TURN_ITERATIONS = 8
-TURNED = 4
-"""Of so many units that may face anything all turns are solved each time, of others the next times."""
 
 
 def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
@@ -77,6 +79,8 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
         state.begun_t = state.refreshed_t = t
     # Whose heading is one of two is looked at as often as who may be at an image.
     turned = any(node.turned and not node.otherwise for node in state.nodes.values())
+    # Where the window is solved rarely, only when there is more to tell.
+    turned = turned and (rarer == 1.0 or t - state.refreshed_t >= MORE * (t - state.begun_t))
     if not (state.due or turned or state.bent_m > JOLT_M * rarer):
         if state.suspected:
             periods = SUSPENSE
@@ -122,7 +126,7 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         rows.learn(state.noise)
         begun = Problem(layout, rows, state.prior)
         judged = likeliest(begun, _solved(begun, layout.start(), solved_t))
-        problem, solved, modes, state.exposed = judged
+        problem, solved, modes, state.exposed, asked = judged
         trimmed = trim(problem, solved)
         left = solved.chain.remainder(layout.length - 1)
         left = turned(left, layout, problem.pivot_m, problem.first(solved.x), solved.x)
@@ -130,7 +134,7 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         for name, images in otherwise(layout, solved.x, modes).items():
             state.nodes[name] = replace(state.nodes[name], otherwise=images)
         found = learn(state, problem, solved)
-        _judge_turns(problem, solved, found)
+        _judge_turns(problem, solved, found, asked)
         _tell_changes(state, problem, solved)
     except ValueError as error:
         text = f"the last minutes could not be solved again, positions go on without: {error}"
@@ -163,32 +167,14 @@ def _solved(problem: Problem, x: Array, solved_t: float) -> Solved:
         x: where the filter has led to, flat.
         solved_t: when the window was last solved (s).
     """
-    solved = _best(problem, x)
-    reckoned = problem.reckoned(x, solved_t)
+    free = any(walk.way is None for walk in problem.layout.walks)
+    slacks = SLACKS_M if free else ()
+    solved = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING)
+    reckoned = problem.going.reckoned(x, solved_t)
     if problem.at(reckoned).cost >= solved.cost:
         return solved
-    return min(solved, _best(problem, reckoned), key=lambda found: found.cost)
-
-
-def _best(problem: Problem, x: Array) -> Solved:
-    """The solution; where a unit's frame may be turned by any angle, the best of several."""
-    layout = problem.layout
-    free = any(walk.way is None for walk in layout.walks)
-    slacks = SLACKS_M if free else ()
-    best = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING)
-    unsure = [i for i, walk in enumerate(layout.walks) if layout.state.nodes[walk.node.node].turned]
-    for i in each_time(layout, unsure, TURNED):
-        walk, since = layout.walks[i], reports_from(layout, i)
-        for angle in all_round():
-            there = best.x.copy()
-            places = layout.states(there, i)[since : walk.last + 1, :2]
-            # Where a unit is switched on later, its bearer was already there.
-            middle = places.mean(axis=0) if since == walk.first else places[0]
-            turn(layout, there, i, Flip(since, facing(middle, angle)))
-            tried = problem.solve(there, SLACKS_M, TURN_ITERATIONS)
-            if tried.cost < best.cost - 1e-3:
-                best = tried
-    return best
+    other = problem.solve(reckoned, slacks, len(slacks) + ITERATIONS, RESTING)
+    return min(solved, other, key=lambda found: found.cost)
 
 
 def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
@@ -204,7 +190,7 @@ def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
     decide(state)
 
 
-def _judge_turns(problem: Problem, solved: Solved, found: Array) -> None:
+def _judge_turns(problem: Problem, solved: Solved, found: Array, asked: Collection[int]) -> None:
     """A unit whose heading has been found is not tried all round any more, unless another one fits again."""
     layout = problem.layout
     for i, walk in enumerate(layout.walks):
@@ -214,7 +200,7 @@ def _judge_turns(problem: Problem, solved: Solved, found: Array) -> None:
         sure = sigma < physics.TURNED_SIGMA_RAD and not one_of_two
         if one_of_two and not node.turned:
             layout.state.nodes[node.node] = replace(node, turned=True)
-        if node.turned and sure and not _in_line(problem, solved, i):
+        if node.turned and sure and i in asked and not _in_line(problem, solved, i):
             layout.state.nodes[node.node] = replace(node, turned=False)
 
 

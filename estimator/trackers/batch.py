@@ -77,7 +77,7 @@ class BatchSmoother:
             return {}
         state = online_pass(ordered, self.settings)
         problem, solved = solve_whole(state)
-        problem, solved, modes, _ = likeliest(problem, solved, WHOLE)
+        problem, solved, modes, *_ = likeliest(problem, solved, WHOLE)
         solved.chain.solve()
         covariances = solved.chain.covariances()
         swing(problem.layout, solved, covariances)
@@ -94,7 +94,7 @@ class BatchSmoother:
         if state.nodes[node].mode in ("fixed", "retired") or not len(state.ledger.table("begins")):
             return None
         problem, solved = solve_whole(state)
-        problem, solved, modes, _ = likeliest(problem, solved, WHOLE)
+        problem, solved, modes, *_ = likeliest(problem, solved, WHOLE)
         return explain(problem.layout.state, problem, solved, modes, node)
 
     def advice(self, readings: Sequence[AnyReading], node: str) -> Advice | None:

@@ -59,8 +59,9 @@ def test_a_map_turned_as_a_whole_fits_as_it_did_but_for_what_was_said_of_heading
     def cost(at: Array) -> Array:
         return np.array([carried.cost(at)])
 
-    chain = Chain(layout.length, Groups(layout.width, layout.border, [carried.coupled]).each)
-    carried.add(chain, there)
+    groups = Groups(layout.width, layout.border, [carried.coupled]).each
+    chain = Chain(layout.length, layout.width, groups)
+    carried.add(chain, carried.shared(groups), there)
     slope = -difference(cost, there)[0]
     assert np.abs(chain.slope() - slope).max() < 0.02 * np.abs(slope).max() + 1e-3
 

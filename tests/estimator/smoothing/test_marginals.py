@@ -32,6 +32,11 @@ class Shape(NamedTuple):
     border: int
     groups: tuple[tuple[Sequence[int], Sequence[int]], ...]
 
+    @property
+    def width(self) -> int:
+        """Columns of a keyframe."""
+        return self.size * sum(len(walks) for walks, _ in self.groups)
+
 
 def alone(length: int, width: int, border: int) -> Shape:
     """One walk."""
@@ -60,7 +65,7 @@ def random_chain(shape: Shape) -> Chain:
         rows = chance.normal(0.0, 1.0, (3 * count, count)) / np.sqrt(count)
         return np.asarray(rows.T @ rows + 0.1 * np.eye(count))
 
-    chain = Chain(shape.length, groups_of(shape))
+    chain = Chain(shape.length, shape.width, groups_of(shape))
     for strand in chain.strands:
         width = len(strand.group.columns)
         for j in range(shape.length):
@@ -90,7 +95,7 @@ def test_solving_what_a_remainder_leaves_equals_solving_whole(shape: Shape) -> N
     for keyframe in sorted({0, 1, shape.length // 2, shape.length - 1}):
         chain = random_chain(shape)
         left = chain.remainder(keyframe)
-        rest, width = Chain(shape.length - keyframe, groups_of(shape)), chain.width
+        rest, width = Chain(shape.length - keyframe, shape.width, groups_of(shape)), chain.width
         for strand, before in zip(rest.strands, chain.strands, strict=True):
             own, lasting = strand.group.columns, width + strand.group.lasting
             strand.diagonal[:], strand.link[:] = before.diagonal[keyframe:], before.link[keyframe:]
@@ -148,6 +153,20 @@ def test_groups_are_what_direct_readings_couple() -> None:
     placed = groups.placed(np.zeros(4, dtype=np.int64), rows)
     assert placed.columns[:, [0, 6]].tolist() == [[2, 8], [7, 12], [1, 6], [2, -1]]
     assert [part.tolist() for part in placed.parts] == [[0, 1], [2], [3]]
+
+
+def test_walks_that_are_held_are_in_no_group() -> None:
+    rows = np.full((2, 12), -1)
+    rows[0, [0, 6]] = 2, 14
+    rows[1, [0, 6]] = 13, 19
+    groups = Groups(18, 3, [rows], held=[0])
+    assert [(g.walks.tolist(), g.lasting.tolist()) for g in groups.each] == [
+        ([1], []),
+        ([2], [1]),
+        ([], [0, 1, 2]),
+    ]
+    placed = groups.placed(np.zeros(2, dtype=np.int64), rows)
+    assert placed.columns[:, [0, 6]].tolist() == [[-1, 2], [1, 6]]
 
 
 def prior_at(problem: Problem, solved: Solved, cut: int) -> Prior:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
@@ -115,3 +116,30 @@ def test_who_was_found_on_the_wrong_side_by_chance_is_found_again(side: float) -
         found = outsides(way_m, seed, told_rad=1.0, heard_m=heard_m)
         assert max(found[len(misled_m) :]) > SURE, "nothing has misled anybody"
         assert max(found[-8:]) < SURE
+
+
+@pytest.mark.parametrize("seed", [3, 4, 5])
+def test_a_companion_who_knows_his_way_tells_what_a_unit_faces_where_no_radio_does(seed: int) -> None:
+    """On the way it is never sure of a wrong place; where both have turned twice it is known."""
+    chance = np.random.default_rng(seed)
+    faces_rad = float(chance.uniform(-math.pi, math.pi))
+    ways_m = {"ff1": gone([0.3, -1.2, 0.3], [12, 12, 12]), "ff2": gone([-0.4, 1.1, -0.4], [12, 12, 12])}
+    ways_m["ff2"] += np.array([0.0, 3.0])
+    tracker = KirchhoffTracker()
+    for node, sigma_rad in (("ff1", UNKNOWN_RAD), ("ff2", 0.02)):
+        e, n = ways_m[node][0].tolist()
+        begins = Node(t=0.0, node=node, role="responder", position_m=(e, n, 0.0), sigma_m=0.2)
+        tracker.fold([replace(begins, heading_sigma_rad=sigma_rad)])
+    for second in range(1, 37):
+        t, apart_m = float(second), math.dist(*(way_m[second].tolist() for way_m in ways_m.values()))
+        tracker.fold([Range(t=t, a="ff1", b="ff2", range_m=apart_m, technology="uwb", sigma_m=0.1)])
+        for node, turned_rad in (("ff1", faces_rad), ("ff2", 0.0)):
+            east, north = (np.diff(ways_m[node], axis=0)[second - 1] + chance.normal(0.0, 0.02, 2)).tolist()
+            cosine, sine = math.cos(turned_rad), math.sin(turned_rad)
+            reported_m = (cosine * east + sine * north, cosine * north - sine * east, 0.0)
+            tracker.fold([Displacement(t=t, from_t=t - 1.0, node=node, delta_m=reported_m)])
+        shown = next(one for one in tracker.estimates() if one.node == "ff1")
+        there_m = np.array([*ways_m["ff1"][second], 0.0])
+        assert outside(shown.position_m, shown.covariance_m2, there_m) < SURE
+    assert shown.position_m is not None
+    assert math.dist(shown.position_m[:2], there_m[:2]) < 1.0

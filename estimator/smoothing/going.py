@@ -1,0 +1,59 @@
+"""How all the walks of a window go between their keyframes."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from estimator.graph.dense import Array
+from estimator.smoothing.layout import Layout, Walk
+from estimator.smoothing.walks import Free, Motion, free_motions, reckon, unit_motion
+
+
+class Going:
+    """What lies between the keyframes of each walk, wherever they are.
+
+    Args:
+        layout: of the window.
+    """
+
+    def __init__(self, layout: Layout) -> None:
+        self._layout = layout
+        self._ways = [self._way(i, walk) for i, walk in enumerate(layout.walks)]
+
+    def _way(self, index: int, walk: Walk) -> tuple[Array, Array | Free]:
+        """Times between a walk's keyframes, and what lies between them."""
+        times = self._layout.times[walk.first : walk.last + 1, index]
+        durations = np.diff(times)
+        if walk.way is None:
+            return durations, free_motions(walk.node.role, durations)
+        return durations, walk.way.between(times[:-1], times[1:])
+
+    def motions(self, x: Array, held: Mapping[int, Motion]) -> list[Motion]:
+        """Each walk's motion at an estimate.
+
+        Args:
+            x: the estimate, flat.
+            held: that of those walks of which it is known, by index.
+        """
+        found = []
+        for i, (walk, (durations, between)) in enumerate(zip(self._layout.walks, self._ways, strict=True)):
+            known = held.get(i)
+            if known is not None:
+                found.append(known)
+                continue
+            states = self._layout.states(x, i)[walk.first : walk.last + 1].copy()
+            if isinstance(between, Free):
+                found.append(between.motion(states))
+            else:
+                found.append(unit_motion(between, durations, states))
+        return found
+
+    def reckoned(self, x: Array, since_t: float) -> Array:
+        """An estimate whose units have gone their own way since an epoch, flat."""
+        layout, there = self._layout, x.copy()
+        for i, (walk, (durations, between)) in enumerate(zip(layout.walks, self._ways, strict=True)):
+            if not isinstance(between, Free):
+                times = layout.times[walk.first : walk.last + 1, i]
+                known = max(int(np.searchsorted(times, since_t, side="right")) - 1, 0)
+                reckon(layout.states(there, i)[walk.first : walk.last + 1], between, durations, known)
+        return there
