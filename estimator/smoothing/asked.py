@@ -63,9 +63,9 @@ def asked_of(problem: Problem, solved: Solved, loose: Loose, again: list[int], e
     led = [i for i in loose if not loose[i].any() and not layout.walks[i].node.otherwise]
     found, unsure = [i for i in led if i in again], [i for i in led if i not in again]
     if effort.whole:
-        some = {*each_time(layout, found, WAYS), *unsure}
+        some = {*_each_time(layout, found, WAYS), *unsure}
     else:
-        some = {*each_time(layout, found, FOUND), *each_time(layout, unsure, CLOCK)}
+        some = {*_each_time(layout, found, FOUND), *_each_time(layout, unsure, CLOCK)}
         rest = [i for i in unsure if i not in some]
         if len(rest) > MISPLACED:
             against = _contradicted(problem, solved)
@@ -74,7 +74,7 @@ def asked_of(problem: Problem, solved: Solved, loose: Loose, again: list[int], e
     return [i for i in loose if i in some or i not in led]
 
 
-def each_time(layout: Layout, walks: list[int], most: int) -> list[int]:
+def _each_time(layout: Layout, walks: list[int], most: int) -> list[int]:
     """So many of some walks, by the clock: at the next times others.
 
     Args:

@@ -7,7 +7,7 @@ import numpy as np
 from estimator.graph.dense import Indices
 from estimator.graph.kernels import Integers
 from estimator.smoothing.carried import Carried, Shared
-from estimator.smoothing.groups import Group, Groups, Placed
+from estimator.smoothing.groups import Groups, Placed
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.rows import Rows
 
@@ -16,6 +16,7 @@ class Coupled:
     """Groups of walks, and what is added to the normal equations of each of them.
 
     Attributes:
+        groups: those walks that hang together.
         rows: the readings among the groups.
         pairs: those of them that are pairs, of each group.
         priors: the walks' own priors among the groups.
@@ -23,7 +24,7 @@ class Coupled:
     """
 
     def __init__(
-        self, layout: Layout, rows: Rows, at: Indices, carried: Carried | None, held: Collection[int] = ()
+        self, layout: Layout, rows: Rows, at: Indices, carried: Carried | None, held: Collection[int]
     ) -> None:
         """Find them.
 
@@ -35,7 +36,7 @@ class Coupled:
             held: indices of walks that are held where they are.
         """
         hang_together = [rows.columns] if carried is None else [rows.columns, carried.coupled]
-        self._groups = groups = Groups(layout.width, layout.border, hang_together, held)
+        self.groups = groups = Groups(layout.width, layout.border, hang_together, held)
         self.rows: Placed = groups.placed(rows.slab, rows.columns)
         pairs = len(rows.pairs)
         self.pairs: list[Integers] = [part[: np.searchsorted(part, pairs)] for part in self.rows.parts]
@@ -44,12 +45,3 @@ class Coupled:
         columns = np.where(at < size, at % width, at - size + layout.width)
         self.priors: Placed = groups.placed(slab, columns[:, None])
         self.shared: list[Shared] = [] if carried is None else carried.shared(groups.each)
-
-    @property
-    def groups(self) -> tuple[Group, ...]:
-        """The groups; the last one has no walks and all of the border."""
-        return self._groups.each
-
-    def home(self, walk: int) -> tuple[int, int]:
-        """The group of a walk that is not held, and which of the group's walks it is."""
-        return self._groups.home(walk)

@@ -153,12 +153,7 @@ def _turned_by(layout: Layout, x: Array, index: int) -> float:
 
 
 def _begun(
-    problem: Problem,
-    x: Array,
-    index: int,
-    loose: Loose,
-    again: list[Flip],
-    new: list[Flip],
+    problem: Problem, x: Array, index: int, loose: Loose, again: list[Flip], new: list[Flip]
 ) -> list[Flip]:
     """Images to begin from: the cheapest of each that is known, then new ones that do not cost far too much.
 

@@ -152,11 +152,11 @@ class Problem:
         """
         layout, rows = self.layout, self.rows
         length = layout.length if until is None else until + 1
-        chain = Chain(length, layout.width, self.coupled.groups)
+        chain = Chain(length, layout.width, self.coupled.groups.each)
         for i, (walk, motion) in enumerate(zip(layout.walks, motions, strict=True)):
             if i in self.held:
                 continue
-            group, block = self.coupled.home(i)
+            group, block = self.coupled.groups.home(i)
             strand = chain.strands[group]
             own = slice(STATES * block, STATES * (block + 1))
             count = max(min(walk.last, length - 1) - walk.first, 0)
