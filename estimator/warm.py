@@ -3,7 +3,10 @@
 import numpy as np
 
 from estimator.fusion.descent import descend
+from estimator.fusion.echoes import tell as tell_echoes
 from estimator.fusion.free import free_motion
+from estimator.fusion.ledger import COLUMNS
+from estimator.fusion.links import NEW
 from estimator.fusion.modes import Sought, costs_of, find_modes
 from estimator.fusion.motion import walked
 from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
@@ -42,6 +45,7 @@ def warm_up() -> None:
     """Call each compiled function once, with arrays of the kinds that it is called with."""
     _warm_chain()
     _warm_filter()
+    tell_echoes(np.zeros((1, 3)), np.zeros(1), np.ones(1))
     one, place = np.ones(2), np.zeros((2, 3))
     strided = np.full((2, 3), 0.5).T
     for states in ((one, one), (strided[0], strided[1])):
@@ -95,7 +99,8 @@ def _warm_chain() -> None:
     nodes = Nodes(slab, slab, slab, place)
     pair, no = np.zeros((1, 2), dtype=np.int64), np.zeros(1, dtype=np.bool_)
     stood = stand(nodes, slab, one, no, rest, place, pair)
-    choose(np.zeros((1, 10)), stood, stood, pair, no)
+    heard, read = (np.zeros((1, len(COLUMNS[name]))) for name in ("pairs", "singles"))
+    choose(heard, stood, stood, pair, no)
     way = Way(0.0, between, (1.0, 1.0))
     way.between(one, one)
     way.lay_out(0, slab, one, one, Laid(place, place, place))
@@ -106,8 +111,8 @@ def _warm_chain() -> None:
     stretch(readings, x, no, no, one)
     excess(slab, one, one)
     costs_of(one, one, place, no, one)
-    ask(slab, np.zeros((1, 10)), 0, 0, one, one, 0.0)
-    rows = arrange(np.zeros((1, 10)), place, place, slab, pair, *(stood,) * 5)
+    ask(slab, heard, 0, 0, one, one, 0.0)
+    rows = arrange(heard, read, place, slab, pair, *(stood,) * 5)
     scattered(place, rows, slab, no)
     sigmas(rows.nominal, rows.nominal, rows)
     turned_by = turn_between(place[:, :2], place[:, :2])
@@ -131,13 +136,13 @@ def _warm_filter() -> None:
     table = np.full((1, FIELDS), 0.5)
     table[0, :2] = ONE, 0.0
     found = descend(table, graph.information.copy(), graph.vector, graph.reference, 1)
-    told = found.residual, found.predicted, found.good
-    tally(table, *told, np.zeros((1, 5)), np.zeros((1, 5)))
-    odd(table, found.good, np.zeros((1, 5)), False)
+    told, newest = (found.residual, found.predicted, found.good), np.array([NEW])
+    tally(table, *told, newest, np.zeros((1, 5)))
+    odd(table, found.good, newest, False)
     ends, marks = np.zeros((1, len(End._fields))), np.zeros((2, 4))
     offset(ends[0], marks, graph.reference, 0.0)
     technology = np.zeros((1, len(Technology._fields)))
-    pair_rows(np.zeros((1, PAIR)), technology, ends, marks, np.zeros((1, 5)), graph.reference)
+    pair_rows(np.zeros((1, PAIR)), technology, ends, marks, newest, graph.reference)
 
 
 if __name__ == "__main__":

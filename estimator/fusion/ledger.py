@@ -11,7 +11,7 @@ from estimator.graph.dense import Array
 Table = Literal["pairs", "singles", "steps", "drops", "begins", "stands", "poses"]
 
 COLUMNS: dict[Table, tuple[str, ...]] = {
-    "pairs": ("t", "kind", "a", "b", "value", "sigma", "source", "constant", "alike", "link"),
+    "pairs": ("t", "kind", "a", "b", "value", "sigma", "source", "constant", "alike", "link", "echo"),
     "singles": ("t", "node", "axis", "value", "sigma", "noise"),
     "steps": ("t", "node", "start_t", "e", "n", "u", "across2", "up2", "turn2", "bias2", "scale2", "given"),
     "drops": ("t", "node", "by"),
@@ -19,10 +19,11 @@ COLUMNS: dict[Table, tuple[str, ...]] = {
     "stands": ("t", "node", "e", "n", "u", "se", "sn", "su"),
     "poses": ("t", "node", "unit", "e", "n", "u", "a", "b", "c"),
 }
-"""pairs: readings between two nodes; singles: fixes, heights and gyro biases, `axis` 0 to 5 of the six
-numbers of a moving node; steps: displacements with the variances that they add; drops: who laid what; begins
-and stands: how moving and standing nodes entered, with their priors; poses: where moving nodes were thought
-to be. Nodes are told by the number of their block."""
+"""pairs: readings between two nodes, `echo` what a range is too long by, as `echoes` tells (m); singles:
+fixes, heights and gyro biases, `axis` 0 to 5 of the six numbers of a moving node; steps: displacements with
+the variances that they add; drops: who laid what; begins and stands: how moving and standing nodes entered,
+with their priors; poses: where moving nodes were thought to be. Nodes are told by the number of their
+block."""
 
 RANGE, RSSI, BEARING, BODY_BEARING = range(4)
 """Kinds of pairs; the last two are bearings in the local frame and in the body frame of `a`."""

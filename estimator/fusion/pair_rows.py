@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion import links, physics, rows, way
-from estimator.fusion.ledger import BEARING, BODY_BEARING, COLUMNS, RSSI
+from estimator.fusion import echoes, links, physics, rows, way
+from estimator.fusion.ledger import BEARING, BODY_BEARING, COLUMNS, RANGE, RSSI
 from estimator.fusion.noise import link_sigma
 from estimator.graph.dense import Array
 
@@ -84,17 +84,24 @@ def pair_rows(
     for r in range(m):
         pair, technology = pairs[r], technologies[int(pairs[r, TECHNOLOGY])]
         a, b, link = ends[int(pair[A])], ends[int(pair[B])], int(pair[LINK])
-        alike = 1.0
+        alike, echo_m = 1.0, 0.0
         if link >= 0:
+            waited_s = pair[T] - newest[link, links.T]
             links.follow(newest[link], pair[T], way_m(a, pair[T]) + way_m(b, pair[T]))
             alike = newest[link, links.ALIKE]
+            if technology[KIND] == RANGE:
+                most_m = echoes.farthest_m(a, b, waited_s, technology[FACTOR] * pair[SIGMA])
+                echo_m = echoes.hear(newest[link], waited_s, pair[VALUE], most_m)
         told = entered[r]
         told[0], told[1], told[2], told[3] = pair[T], technology[KIND], a[way.BLOCK], b[way.BLOCK]
         told[4], told[5], told[6] = pair[VALUE], pair[SIGMA], technology[SOURCE]
-        told[7], told[8], told[9] = pair[CONSTANT], alike, pair[LINK]
+        told[7], told[8], told[9], told[10] = pair[CONSTANT], alike, pair[LINK], echo_m
         if held[r]:
             kind = kind_of(technology)
             fill(table[first[kind]], pair, technology, a, b, alike, marks, x)
+            if echo_m > 0.0:
+                row = table[first[kind]]
+                row[rows.OUTLIERS], row[rows.SHIFT], row[rows.SPREAD] = echoes.noise(echo_m, alike)
             first[kind] += 1
     return PairRows(entered, table[: first[BEARING]])
 

@@ -108,6 +108,14 @@ RANGE_BIAS_OTHER_SIGMA_M = 0.5
 RANGE_NOISE = Mixture(outliers=0.1, shift=1.5, spread=3.0)
 """Obstructed ranges are too long: M, Wi-Fi RTT's 95th percentile is at 4 to 6 m."""
 
+RUNS_MPS, FLIES_MPS = 5.0, 20.0
+"""Nobody inside gets away faster, and no UAV: what a range grows by beyond it is an echo."""
+ECHOES = 0.999
+"""How often a reading is one that follows such a jump."""
+ECHO_UNHEARD_S, ECHO_LOWER_S = 3.0, 3.0
+"""After so long a pause a jump tells nothing; and so long a level stays that is no glitch: hanyang has ranges
+10 m too short for 0.3 s."""
+
 RSSI_SIGMA_DB = 6.0
 """M: 5 to 7 dB."""
 RSSI_POWER_DBM = -45.0

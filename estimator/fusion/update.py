@@ -3,10 +3,11 @@
 import numpy as np
 from numba import njit
 
+from estimator.fusion import echoes, physics
 from estimator.fusion.descent import INDEFINITE, SOLVED, Found, descend
 from estimator.fusion.ledger import RANGE
 from estimator.fusion.links import ERROR, KEPT
-from estimator.fusion.rows import KIND, LINK, NOMINAL, SIGMA, SOURCE
+from estimator.fusion.rows import KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
@@ -108,6 +109,8 @@ def tally(table: Array, residual: Array, predicted: Array, good: Array, links: A
         sums[source, 4] += 1.0
         if link < 0:
             continue
+        if table[r, OUTLIERS] == physics.ECHOES:
+            echoes.fit(links[link], good[r])
         error = residual[r] / nominal
         if links[link, KEPT] > SAME_PLACE and not np.isnan(links[link, ERROR]):
             sums[source, 2] += good[r]

@@ -59,7 +59,7 @@ def arrange(
     """Put readings one below the other: pairs, then singles, then drops (three rows each).
 
     Args:
-        pairs: rows of the ledger, m × 10.
+        pairs: rows of the ledger, m × 11.
         singles: the same, n × 6.
         drops: the same, d × 3.
         slab: keyframe of each pair, m.

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.fusion import physics
+from estimator.fusion import echoes, physics
 from estimator.fusion.ledger import BEARING, RANGE, RSSI
 from estimator.fusion.noise import LearnedNoise
 from estimator.fusion.pairs import UNTOLD_POWER
@@ -136,6 +136,7 @@ class Rows:
         learned = np.array(told).reshape(-1, 3)
         white, common, outliers = scattered(learned, self._rows, self._readings.kind, self._inside)
         self.noise[:, 0] = outliers
+        echoes.tell(self.noise, self.pairs[:, 10], self.alike)
         self._white, self._common = white, common
         self._tell(white, common)
 

@@ -121,3 +121,17 @@ def test_readings_to_an_undecided_node_are_only_entered() -> None:
     assert len(state.ledger.table("pairs")) == 3
     assert state.sightings == {"lost": 1, "new": 1, "base2": 1}
     assert state.counts["not_fused"] == 1
+
+
+def test_a_range_that_jumps_farther_than_anybody_runs_is_held_and_entered_as_an_echo() -> None:
+    state = crew()
+    ranges_m = (6.0, 6.1, 26.1, 26.2, 6.2)
+    ranges = (
+        Range(t=T + 0.1 * i, a="ff", b="base", range_m=range_m, sigma_m=0.1, technology="uwb")
+        for i, range_m in enumerate(ranges_m)
+    )
+    table = held(state, *ranges)
+    assert column(state, "echo") == pytest.approx([0.0, 0.0, 20.0, 20.0, 0.0])
+    assert table[2:4, rows.SHIFT] == pytest.approx([20.0, 20.0])
+    assert (table[[0, 1, 4], rows.SHIFT] == physics.RANGE_NOISE.shift).all()
+    assert (table[:, rows.OUTLIERS] == physics.ECHOES).tolist() == [False, False, True, True, False]

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from estimator.fusion.links import ERROR, KEPT
-from estimator.fusion.rows import FIELDS, LINK, NOMINAL, SIGMA, SOURCE
+from estimator.fusion.links import ECHO_M, ECHO_ODDS, ERROR, KEPT, NEW
+from estimator.fusion.physics import ECHOES
+from estimator.fusion.rows import FIELDS, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE
 from estimator.fusion.update import odd, tally
 
 
@@ -18,7 +19,7 @@ def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_
         np.full(4, 0.04),
         np.array([0.9, 0.8, 0.2, 1.0]),
     )
-    links, sums = np.zeros((2, 5)), np.zeros((3, 5))
+    links, sums = np.tile(NEW, (2, 1)), np.zeros((3, 5))
     links[:, KEPT], links[:, ERROR] = 1.0, [1.5, np.nan]
     tally(table, residual, predicted, good, links, sums)
     unsure = 0.04 * 0.16 / 0.2
@@ -32,6 +33,19 @@ def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_
     assert np.isnan(links[1, ERROR])
 
 
+def test_only_a_reading_of_an_echo_tells_by_fitting_that_the_echo_has_ended() -> None:
+    table, links = np.zeros((1, FIELDS)), np.array([NEW])
+    table[:, SOURCE], table[:, NOMINAL], table[:, SIGMA] = 0, 0.3, 0.1
+    links[0, ECHO_M], links[0, ECHO_ODDS] = 6.0, 0.1
+    fits = np.zeros(1), np.zeros(1), np.full(1, 0.9)
+    table[0, OUTLIERS] = 0.1
+    tally(table, *fits, links, np.zeros((1, 5)))
+    assert links[0, ECHO_M] == 6.0
+    table[0, OUTLIERS] = ECHOES
+    tally(table, *fits, links, np.zeros((1, 5)))
+    assert links[0, ECHO_M] == 0.0
+
+
 @pytest.mark.parametrize(
     ("kept", "error", "again"),
     [
@@ -42,7 +56,7 @@ def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_
 )
 def test_an_outlier_is_told_from_two_in_a_row_on_one_link(kept: float, error: float, again: bool) -> None:
     """The first may be chance; the second may be a breadcrumb that was kicked."""
-    table, links = np.zeros((2, FIELDS)), np.zeros((1, 5))
+    table, links = np.zeros((2, FIELDS)), np.array([NEW])
     table[:, LINK] = -1, 0
     links[0, KEPT], links[0, ERROR] = kept, error
     bad, good = np.array([0.1, 0.1]), np.array([0.9, 0.9])
