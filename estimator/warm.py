@@ -35,6 +35,7 @@ from estimator.smoothing.learn import noise_scores
 from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals, stretch
 from estimator.smoothing.moved import ask
 from estimator.smoothing.obstructed import excess
+from estimator.smoothing.rarer import once_a_second
 from estimator.smoothing.slips import gains, unsure
 from estimator.smoothing.turned import change_pairs, moved_from, turn_between, turning
 from estimator.smoothing.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
@@ -110,6 +111,7 @@ def _warm_chain() -> None:
     apart(readings, x)
     stretch(readings, x, no, no, one)
     excess(slab, one, one)
+    once_a_second(one, slab, one)
     costs_of(one, one, place, no, one)
     ask(slab, heard, 0, 0, one, one, 0.0)
     rows = arrange(heard, read, place, slab, pair, *(stood,) * 5)

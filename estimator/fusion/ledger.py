@@ -27,6 +27,7 @@ block."""
 
 RANGE, RSSI, BEARING, BODY_BEARING = range(4)
 """Kinds of pairs; the last two are bearings in the local frame and in the body frame of `a`."""
+ECHO = COLUMNS["pairs"].index("echo")
 
 MERGED = 64
 """Chunks of a table, the newest of which are joined to one when there are more."""

@@ -6,6 +6,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion.introduce import NO_PRIOR_SIGMA_M
+from estimator.fusion.ledger import ECHO
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
@@ -73,9 +74,10 @@ def _before(state: FusionState, node: NodeState) -> list[int]:
 
 
 def renumber(pairs: Array, old: int, new: int, since_t: float) -> Array:
-    """The ledger's pairs with a node's new number from an epoch on."""
+    """The ledger's pairs with a node's new number from an epoch on: what jumped then was no echo."""
     later = pairs[:, 0] >= since_t
     changed: Array = pairs.copy()
     for column in (2, 3):
-        changed[later & (pairs[:, column] == old), column] = new
+        mine = later & (pairs[:, column] == old)
+        changed[mine, column], changed[mine, ECHO] = new, 0.0
     return changed

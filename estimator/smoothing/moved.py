@@ -4,6 +4,7 @@ A breadcrumb may be kicked or carried: from some epoch on its readings disagree 
 another one.
 """
 
+from copy import copy
 from operator import itemgetter
 from typing import NamedTuple
 
@@ -56,19 +57,25 @@ class Moved(NamedTuple):
 def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) -> tuple[list[Moved], bool]:
     """The standing nodes that readings put elsewhere, and whether some others may be elsewhere.
 
+    Asked is one reading of each link a second, see `Rows.rarer`: what a disagreement is to be is counted in
+    readings.
+
     Args:
         problem: of the window.
         solved: its solution.
         recent_s: how old readings may be (s).
     """
-    state, rows = problem.layout.state, problem.rows
+    state, whole = problem.layout.state, problem
+    chosen, rows = problem.rows.rarer()
+    problem = copy(problem)
+    problem.rows = rows
     m = len(rows.pairs)
     kinds = rows.pairs[:, 1]
     now = float(problem.layout.grid[-1])
     residual, sigma = solved.linear.residual[:m], rows.sigma[:m]
     cost = cauchy_cost(residual / sigma, CAUCHY)
     usual = costs_of(residual, sigma, rows.noise[:m], kinds == RANGE, rows.alike[:m])
-    recent = np.flatnonzero((rows.pairs[:, 0] > now - recent_s) & (kinds <= RSSI))
+    recent = chosen[(rows.pairs[chosen, 0] > now - recent_s) & (kinds[chosen] <= RSSI)]
     recent = recent[np.argsort(rows.pairs[recent, 0], kind="stable")]
     found: list[tuple[float, Moved]] = []
     suspected = False
@@ -91,7 +98,7 @@ def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) ->
             parts += [mine[: len(mine) - first] for first in before.tolist()]
             place, by = best_place(problem, solved, node, parts) if asked else None, solved
             if place is None and together == (RANGE,) and parts and rows.pairs[parts[0][0], 0] > now - NEW_S:
-                drawn = drawn_place(problem, solved, node, parts[0])
+                drawn = drawn_place(whole, solved, node, _since(rows.pairs, node.index, parts[0]))
                 if drawn is not None:
                     place, by = drawn
             if place is None:
@@ -107,6 +114,13 @@ def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) ->
         # One that lies elsewhere makes its neighbours seem to, but less far: they are asked again without it.
         return [max(found, key=itemgetter(0))[1]], suspected or len(found) > 1
     return [moved for _, moved in found], suspected
+
+
+def _since(pairs: Array, number: int, mine: Integers) -> Integers:
+    """All ranges to a node since the first of some of them, in order of epoch."""
+    to = (pairs[:, 2] == number) | (pairs[:, 3] == number)
+    found = np.flatnonzero(to & (pairs[:, 1] == RANGE) & (pairs[:, 0] >= pairs[mine[0], 0]))
+    return found[np.argsort(pairs[found, 0], kind="stable")]
 
 
 class Asked(NamedTuple):

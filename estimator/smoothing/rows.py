@@ -1,15 +1,17 @@
 """Every reading of the window as rows of numbers, and their linearisation at any estimate."""
 
-from typing import NamedTuple
+from copy import copy
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from estimator.fusion import echoes, physics
-from estimator.fusion.ledger import BEARING, RANGE, RSSI
+from estimator.fusion.ledger import BEARING, ECHO, RANGE, RSSI
 from estimator.fusion.noise import LearnedNoise
 from estimator.fusion.pairs import UNTOLD_POWER
 from estimator.graph.dense import Array
+from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import wrap
 from estimator.smoothing.arranged import NOISES, Arranged, arrange, scattered, sigmas
 from estimator.smoothing.chosen import choose, kept
@@ -18,6 +20,7 @@ from estimator.smoothing.ends import FREE, UNIT, Ends, nodes_of, place_ends
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.linear import Readings, add_unsure, apart, jacobians, residuals, stretch
 from estimator.smoothing.obstructed import excess
+from estimator.smoothing.rarer import once_a_second
 
 
 class Linearised(NamedTuple):
@@ -66,6 +69,7 @@ class Rows:
         self.shift: Array = np.zeros(len(self.nominal))
         self.sigma: Array = self.nominal.copy()
         self._told: Array = self.nominal
+        self._usual_noise: Array = self.noise
         self._white, self._common = self.nominal**2, np.zeros(len(self.nominal))
         size = layout.length * layout.width
         self._bearings = np.flatnonzero(self.pairs[:, 1] >= BEARING)
@@ -136,7 +140,8 @@ class Rows:
         learned = np.array(told).reshape(-1, 3)
         white, common, outliers = scattered(learned, self._rows, self._readings.kind, self._inside)
         self.noise[:, 0] = outliers
-        echoes.tell(self.noise, self.pairs[:, 10], self.alike)
+        self._usual_noise = self.noise.copy()
+        echoes.tell(self.noise, self.pairs[:, ECHO], self.alike)
         self._white, self._common = white, common
         self._tell(white, common)
 
@@ -162,6 +167,21 @@ class Rows:
     def _tell(self, white: Array, common: Array) -> None:
         self._told = sigmas(white, common, self._rows)
         self.sigma = self._told.copy()
+
+    def rarer(self) -> tuple[Integers, Self]:
+        """The pairs that there would be had each link been read once a second, and the rows as noisy as then.
+
+        However many share an error, what is asked of each is asked of as many; and a range that jumps is an
+        outlier like others: it may be no echo, but a node that was moved.
+        """
+        m = len(self.pairs)
+        chosen, alike = once_a_second(self.t[:m], self.pairs[:, 9].astype(np.int64), self.alike[:m])
+        other = copy(self)
+        other.alike = np.concatenate([alike, self.alike[m:]])
+        other.noise = self._usual_noise
+        told = sigmas(self._white, self._common, self._rows._replace(alike=other.alike))
+        other.sigma = np.sqrt(np.maximum(self.sigma**2 - self._told**2, 0.0) + told**2)
+        return chosen, other
 
     def widen(self, x: Array, jacobian: Array) -> None:
         """What the estimate says of each reading's noise.

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from estimator.fusion.introduce import NO_PRIOR_SIGMA_M, place, retire
+from estimator.fusion.ledger import ECHO
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
@@ -97,3 +98,15 @@ def test_who_has_been_retired_or_moves_by_itself_since_is_asked_no_more() -> Non
 
 def test_where_nothing_was_kicked_nothing_is_taken_back() -> None:
     assert not reunite(walked())
+
+
+def test_what_jumped_when_it_was_moved_was_no_echo() -> None:
+    state = walked()
+    pairs = state.ledger.table("pairs").copy()
+    pairs[:, ECHO] = 3.0
+    state.ledger.replace("pairs", pairs)
+    branch(state, Moved("b1", TURNED_S, 25))
+    pairs = state.ledger.table("pairs")
+    since = pairs[:, 0] >= TURNED_S
+    assert (pairs[since, ECHO] == 0.0).all()
+    assert (pairs[~since, ECHO] == 3.0).all()

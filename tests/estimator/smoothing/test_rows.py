@@ -40,3 +40,12 @@ def test_inside_ranges_of_a_link_are_worth_no_more_than_what_stays_while_nobody_
 
 def test_nothing_stays_between_a_responder_and_a_surveyed_anchor() -> None:
     assert worth_m("anchor") < 0.5 * physics.WALL_M
+
+
+def test_who_ranges_once_a_second_is_asked_of_all_of_it_as_it_is() -> None:
+    rows = problem_of(fused(stood("breadcrumb"))).rows
+    chosen, asked = rows.rarer()
+    assert len(chosen) == len(rows.pairs)
+    assert asked.alike == pytest.approx(rows.alike)
+    assert asked.sigma == pytest.approx(rows.sigma)
+    assert (asked.noise == rows.noise).all()
