@@ -107,11 +107,13 @@ def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[S
         state.say("outlier", reading.t, node.node, text)
         state.count("outlier")
     if increment.turn is not None:
-        told = increment.turn
+        told, noise = increment.turn, physics.TURN_NOISE
         state.ledger.add(
-            "singles", reading.t, node.index, 4.0, told.value, told.sigma, float(NOISES.index(told.noise))
+            "singles", told.t, node.index, 4.0, told.value, told.sigma, float(NOISES.index(noise))
         )
-        turns.append(told)
+        # The tick moves on first, then takes in what was told before.
+        sigma = math.sqrt(told.sigma**2 + told.since)
+        turns.append(Single(node.unit, 1, told.value, sigma, noise))
     given = float(reading.sigma_m is not None)
     across, _, up, turn, bias, scale = increment.noise
     variances = (across, up, turn, bias, scale, given)

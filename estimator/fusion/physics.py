@@ -3,6 +3,7 @@
 Physics leaves most of them a span. Some were chosen among what is plausible with recordings in view: the
 public sets plaza1, danis and hanyang, and the scenarios of `estimator.simulate`. Accuracy on these is
 therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M`, `SCALE_SIGMA`,
+`SET_OFF_BIAS_RADPS` (with plaza1 and plaza2 in view),
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
 `FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE`, `WALL_M`, `EXCESS_M` and the two after
 it, and that the spread of gyro biases is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm. M
@@ -38,6 +39,9 @@ BIAS_SIGMA_MOST_RADPS = radians(0.5)
 """Gyro bias after the unit's own calibration at switch-on: nearly nil of a good unit, half a degree a second
 of a cheap one once warm. How far those of a crew differ is anything up to that (`fusion/gyros.py`)."""
 BIAS_WALK_RADPS_PER_ROOT_S = radians(0.001)
+SET_OFF_BIAS_RADPS = radians(0.04)
+"""A gyro's scale is good to 1 % (data sheets of LSM6DSO, ICM-20948), and who follows a wall turns round once
+in a minute and a half: when he sets off, his bias seems to change by that."""
 SCALE_SIGMA = 0.02
 SCALE_WALK_PER_ROOT_S = 1e-5
 STRAPDOWN_SCALE_SIGMA = 0.01

@@ -29,6 +29,7 @@ class Standing(msgspec.Struct, frozen=True, array_like=True):
         t: of the newest one (s).
         heading_rad: the newest one.
         turned_rad: by how much it has turned since the first one.
+        told: this standstill has told a bias before.
         sums: their number, and of their epochs τ and turns h since the first one Σ τ, Σ h, Σ τ², Σ τ h, Σ h².
     """
 
@@ -36,6 +37,7 @@ class Standing(msgspec.Struct, frozen=True, array_like=True):
     t: float
     heading_rad: float
     turned_rad: float = 0.0
+    told: bool = False
     sums: tuple[float, float, float, float, float, float] = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def bias(self) -> Bias | None:
@@ -71,11 +73,12 @@ def stand_on(before: Standing | None, t: float, heading_rad: float) -> tuple[Sta
     step = (heading_rad - before.heading_rad + np.pi) % (2.0 * np.pi) - np.pi
     since_s = t - before.t
     if since_s > physics.STILL_SILENT_S or abs(step) > physics.STILL_TURN_RADPS * max(since_s, 1.0):
-        return Standing(t, t, heading_rad), before.bias()
+        bias = before.bias()
+        return Standing(t, t, heading_rad, told=before.told or bias is not None), bias
     n, t1, h1, t2, th, h2 = before.sums
     after, turned = t - before.since_t, before.turned_rad + step
     sums = n + 1.0, t1 + after, h1 + turned, t2 + after * after, th + after * turned, h2 + turned * turned
-    standing = Standing(before.since_t, t, heading_rad, turned, sums)
+    standing = Standing(before.since_t, t, heading_rad, turned, before.told, sums)
     if after < physics.STILL_LONG_S or sums[0] < physics.STILL_READINGS:
         return standing, None
-    return Standing(t, t, heading_rad), standing.bias()
+    return Standing(t, t, heading_rad, told=True), standing.bias()

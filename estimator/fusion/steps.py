@@ -8,7 +8,6 @@ from msgspec.structs import replace
 from estimator.estimate import Vector3
 from estimator.fusion import physics
 from estimator.fusion.nodes import NodeState
-from estimator.fusion.rows import Single
 from estimator.fusion.silence import LONGEST_S
 from estimator.fusion.standing import stand_on
 from estimator.fusion.way import Mark
@@ -29,6 +28,25 @@ Noise = tuple[float, float, float, float, float, float]
 NOTHING = (0.0,) * 6
 
 
+SET_OFF: Noise = (0.0, 0.0, 0.0, 0.0, physics.SET_OFF_BIAS_RADPS**2, 0.0)
+
+
+class Turn(NamedTuple):
+    """The gyro bias that a standstill has told (ZARU).
+
+    Attributes:
+        t: epoch of the last report that tells it (s).
+        value: the bias (rad/s).
+        sigma: its standard deviation (rad/s).
+        since: variance that it has gained since then (rad²/s²).
+    """
+
+    t: float
+    value: float
+    sigma: float
+    since: float = 0.0
+
+
 class Increment(NamedTuple):
     """What one displacement adds to a unit's way.
 
@@ -36,14 +54,14 @@ class Increment(NamedTuple):
         since_t: epoch that the unit's position referred to before it (s).
         delta_m: displacement in the unit's frame (m).
         noise: variances that it adds.
-        turn: the gyro bias that is told by a standstill, if one has ended or lasted long (ZARU).
+        turn: what a standstill tells, if one has ended or lasted long.
         too_fast: nobody moves so far in its time.
     """
 
     since_t: float
     delta_m: Vector3
     noise: Noise
-    turn: Single | None
+    turn: Turn | None
     too_fast: bool
 
 
@@ -92,15 +110,17 @@ class Step:
         if too_fast:
             across, up = across + length**2, up + length**2
         still = own > 0.0 and length < physics.STILL_MPS * own and start <= pose_t
-        turn = self._stand(reading, still)
+        turn, sets_off = self._stand(reading, still)
         if isinstance(reading, Led):
             up += reading.up_m2 + (physics.STRAPDOWN_SCALE_SIGMA * u) ** 2
             if reading.rested_radps > 0.0:
-                turn = Single(self.node.unit, 1, 0.0, reading.rested_radps, physics.TURN_NOISE)
+                turn = Turn(t, 0.0, reading.rested_radps)
         else:
             up += (physics.SCALE_SIGMA * u) ** 2
         up += self._climb_m2(reading, length)
         noise = walk_noise((across, across, up), reading, length, duration)
+        if sets_off:
+            noise = sum_of(noise, SET_OFF)
         if own > 0.0:
             self._speed_mps = math.hypot(e, n) / own
         self._pose_t = self._unit_t = t
@@ -129,17 +149,24 @@ class Step:
         climb_m2, self._unseen_up_m2 = self._unseen_up_m2, 0.0
         return climb_m2
 
-    def _stand(self, reading: Displacement, still: bool) -> Single | None:
-        """Go on standing, or stop; the gyro bias that this tells."""
-        stood, told = None, None
+    def _stand(self, reading: Displacement, still: bool) -> tuple[Turn | None, bool]:
+        """Go on standing, or stop.
+
+        Returns:
+            The gyro bias that this tells, and whether its bearer sets off after it has been told.
+        """
+        before, stood, told = self._still, None, None
         if still and reading.heading_rad is not None:
-            stood, told = stand_on(self._still, reading.t, reading.heading_rad)
+            stood, told = stand_on(before, reading.t, reading.heading_rad)
         elif still:
-            stood = self._still
-        elif self._still is not None:
-            told = self._still.bias()
+            stood = before
+        elif before is not None:
+            told = before.bias()
         self._still = stood
-        return None if told is None else Single(self.node.unit, 1, told.value, told.sigma, physics.TURN_NOISE)
+        sets_off = not still and before is not None and (before.told or told is not None)
+        if before is None or told is None:
+            return None, sets_off
+        return Turn(before.t, *told, SET_OFF[4] if sets_off else 0.0), sets_off
 
     def after(self) -> NodeState:
         """The unit after the step."""

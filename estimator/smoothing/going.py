@@ -6,7 +6,7 @@ import numpy as np
 
 from estimator.graph.dense import Array
 from estimator.smoothing.layout import Layout, Walk
-from estimator.smoothing.walks import Free, Motion, free_motions, reckon, unit_motion
+from estimator.smoothing.walks import STATES, Free, Motion, free_motions, reckon, unit_motion
 
 
 class Going:
@@ -56,4 +56,22 @@ class Going:
                 times = layout.times[walk.first : walk.last + 1, i]
                 known = max(int(np.searchsorted(times, since_t, side="right")) - 1, 0)
                 reckon(layout.states(there, i)[walk.first : walk.last + 1], between, durations, known)
+        return there
+
+    def kinked(self, x: Array, within_s: float) -> Array:
+        """An estimate, flat, with each keyframe of a unit moved on by what its way is bent soon after.
+
+        What was heard between two keyframes is thus held against both: what it has made of the next one, too.
+
+        Args:
+            x: the estimate, flat.
+            within_s: how long after the next keyframe a way is bent by what was heard before it (s).
+        """
+        layout, there = self._layout, x.copy()
+        for i, (walk, motion) in enumerate(zip(layout.walks, self.motions(x, {}), strict=True)):
+            if walk.way is not None:
+                times = layout.times[walk.first : walk.last + 1, i]
+                bent = np.vstack([np.zeros(STATES), np.cumsum(motion.residual, axis=0)])
+                until = np.searchsorted(times, times[1:] + within_s).clip(max=len(times) - 1)
+                layout.states(there, i)[walk.first : walk.last] += bent[until] - bent[:-1]
         return there

@@ -22,6 +22,9 @@ from estimator.smoothing.linear import Readings, add_unsure, apart, jacobians, r
 from estimator.smoothing.obstructed import excess
 from estimator.smoothing.rarer import once_a_second
 
+BIAS = 4
+"""Axis of a single that tells a gyro bias."""
+
 
 class Linearised(NamedTuple):
     """Rows at an estimate.
@@ -48,6 +51,7 @@ class Rows:
         nominal: claimed or assumed standard deviation, m.
         source: number of the technology, m; −1: none.
         alike: how many readings of its link share an error, as each counts, m.
+        turns: which of them are gyro biases that standing units tell, m.
         pairs: the ledger's rows of the pairs, as they stand in front.
         singles: those of the singles.
         drops: those of the drops.
@@ -66,6 +70,9 @@ class Rows:
         self._strongest = np.zeros(len(self.pairs), dtype=bool)
         heard = self.pairs[rssi]
         self._strongest[rssi] = candidates(heard[:, 0], heard[:, 9], heard[:, 4])
+        own = slice(len(self.pairs), len(self.pairs) + len(self.singles))
+        self.turns: NDArray[np.bool_] = np.zeros(len(self.nominal), dtype=bool)
+        self.turns[own] = self.singles[:, 2] == BIAS
         self.shift: Array = np.zeros(len(self.nominal))
         self.sigma: Array = self.nominal.copy()
         self._told: Array = self.nominal

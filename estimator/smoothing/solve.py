@@ -7,6 +7,7 @@ from typing import Self
 
 import numpy as np
 
+from estimator.fusion import physics
 from estimator.fusion.ledger import RSSI
 from estimator.fusion.prior import Prior
 from estimator.graph.dense import Array
@@ -95,9 +96,7 @@ class Problem:
         total += prior_cost(x, self._at, self._mean, self._information)
         for motion in motions:
             total += misfit(motion)
-        if self._carried is not None:
-            total += self._carried.cost(x)
-        return total
+        return total if self._carried is None else total + self._carried.cost(x)
 
     def linearise(self, x: Array) -> Linearised:
         """The rows at an estimate, with first-estimate Jacobians (estimation.md, point 6).
@@ -110,9 +109,7 @@ class Problem:
     @property
     def pivot_m(self) -> Array:
         """What the map is turned about, east and north, 2 (m)."""
-        return (
-            np.array(self.layout.state.base_place()[:2]) if self._carried is None else self._carried.pivot_m
-        )
+        return self._carried.pivot_m if self._carried else np.array(self.layout.state.base_place()[:2])
 
     def first(self, x: Array) -> Array:
         """Where rows are linearised at an estimate, flat."""
@@ -121,15 +118,24 @@ class Problem:
     def _jacobian(self, x: Array) -> Array:
         return self.rows.jacobian(self.first(x))
 
-    def weigh(self, residual: Array, slack_m: float = 0.0) -> Weighted:
+    def weigh(self, residual: Array, slack_m: float = 0.0, doubt: Array | None = None) -> Weighted:
         """E-step of the readings' noise, as large as the estimate may be off.
 
         Else readings a metre off pull with all their weight (graduated non-convexity, Blake, Zisserman).
+
+        Args:
+            residual: z − h(x) − shift, m.
+            slack_m: how far off places may be (m).
+            doubt: variance of each h(x) by what is not solved yet, m; None: all is.
         """
-        slack = np.full(len(residual), slack_m)
-        slack[: len(self.rows.pairs)][self.rows.pairs[:, 1] == RSSI] *= SLACK_DB_PER_M
-        sigma = np.hypot(self.rows.sigma, slack)
-        weighted = weigh(residual, sigma, np.zeros(len(residual)), *self.rows.noise.T)
+        rows, sigma = self.rows, self.rows.sigma
+        unsure = np.zeros(len(residual)) if doubt is None else doubt
+        if slack_m > 0.0:
+            slack = np.where(rows.turns, 0.0, slack_m)
+            slack[: len(rows.pairs)][rows.pairs[:, 1] == RSSI] *= SLACK_DB_PER_M
+            sigma = np.hypot(sigma, slack)
+            unsure = np.where(rows.turns, physics.BIAS_SIGMA_MOST_RADPS**2, unsure)
+        weighted = weigh(residual, sigma, unsure, *rows.noise.T)
         weighted.information[self.left_out] = 0.0
         return weighted
 
@@ -189,19 +195,24 @@ class Problem:
         return chain
 
     def _step(
-        self, x: Array, linear: Linearised, motions: list[Motion], slack_m: float, damping: float, near: bool
+        self,
+        x: Array,
+        linear: Linearised,
+        weighted: Weighted,
+        motions: list[Motion],
+        damping: float,
+        near: bool,
     ) -> tuple[Array, float]:
         """A Newton step, flat, and the gain in log likelihood that it promises.
 
         Args:
             x: the estimate, flat.
             linear: the rows there.
+            weighted: how they are weighed.
             motions: the walks' motion there.
-            slack_m: how far off it may be (m).
             damping: see `Chain.damp`.
             near: it is near the optimum: negative curvature counts, as long as the whole stays positive.
         """
-        weighted = self.weigh(linear.residual, slack_m)
         for signed in (True, False) if near else (False,):
             chain = self.assemble(x, linear, weighted, motions)
             self.bend(chain, x, weighted, signed)
@@ -231,7 +242,12 @@ class Problem:
                 add_bends(rows.readings, part, *told, strand.diagonal, strand.wide, strand.corner)
 
     def solve(
-        self, x: Array, slacks_m: tuple[float, ...] = (), iterations: int = 20, resting: float = RESTING
+        self,
+        x: Array,
+        slacks_m: tuple[float, ...] = (),
+        iterations: int = 20,
+        resting: float = RESTING,
+        doubt: Array | None = None,
     ) -> Solved:
         """Newton's method as far as its curvature is positive, until nothing is to be had any more.
 
@@ -242,6 +258,7 @@ class Problem:
             iterations: at most so many steps.
             resting: promised gain in log likelihood ε at which it ends: no number with standard deviation σ
                 is then farther than √(2 ε) σ from where its step leads.
+            doubt: variance of each row's h(x) at the start, m; None: it is as good as can be.
         """
         linear, motions = self.linearise(x), self.motions(x)
         self.rows.widen(x, linear.jacobian)
@@ -249,7 +266,8 @@ class Problem:
         damping, near, rests = 0.0, False, False
         for iteration in range(iterations):
             slack = slacks_m[iteration] if iteration < len(slacks_m) else 0.0
-            step, promised = self._step(x, linear, motions, slack, damping, near and slack == 0.0)
+            weighted = self.weigh(linear.residual, slack, doubt if iteration == 0 else None)
+            step, promised = self._step(x, linear, weighted, motions, damping, near and slack == 0.0)
             if not np.abs(x + step).max(initial=0.0) < NOWHERE:
                 # Readings contradict each other beyond all measure: no step helps.
                 break

@@ -162,6 +162,9 @@ def _solved(problem: Problem, x: Array, solved_t: float) -> Solved:
     The filter may have turned the map, of which what was solved before knows nothing: the kink between the
     two can bend everything, and turn the map further with each solution.
 
+    A reading that has led the filter far away lies between keyframes that know nothing of it and those that
+    do: it is held against a start that is as unsure as that, or it would be an outlier for ever.
+
     Args:
         problem: of the window.
         x: where the filter has led to, flat.
@@ -169,7 +172,9 @@ def _solved(problem: Problem, x: Array, solved_t: float) -> Solved:
     """
     free = any(walk.way is None for walk in problem.layout.walks)
     slacks = SLACKS_M if free else ()
-    solved = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING)
+    kinked = problem.going.kinked(x, physics.TICK_S)
+    doubt = (problem.rows.residual(kinked) - problem.rows.residual(x)) ** 2
+    solved = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING, doubt)
     reckoned = problem.going.reckoned(x, solved_t)
     if problem.at(reckoned).cost >= solved.cost:
         return solved

@@ -44,7 +44,11 @@ def test_who_walks_towards_the_radio_meanwhile_comes_back_by_more_and_who_leaves
         assert (found[11:] == 0.0).all()
 
 
-@given(st.lists(st.floats(-MOST_M, MOST_M), max_size=30))
+WALKED_M = MOST_M - 1e-9
+"""By so much sums of floats are off at most."""
+
+
+@given(st.lists(st.floats(-WALKED_M, WALKED_M), max_size=30))
 def test_nothing_that_can_be_walked_is_an_echo(steps_m: list[float]) -> None:
     assert not heard(*np.cumsum([20.0, *steps_m])).any()
 

@@ -101,4 +101,24 @@ def test_a_standstill_that_ends_tells_the_units_bias_when_its_bearer_walks_on() 
         )
         fold_tick(state, float(second), [reading])
         known = float(state.graph.value(state.nodes["ff1"].unit)[1])
-        assert known == pytest.approx(beta if second == 20 else 0.0, rel=0.02, abs=1e-9)
+        assert known == pytest.approx(beta if second == 20 else 0.0, rel=0.025, abs=1e-9)
+
+
+@pytest.mark.parametrize("stood_s", [29, 33], ids=["told as he goes", "told before"])
+def test_whoever_sets_off_is_biased_less_surely_than_he_was_at_rest(stood_s: int) -> None:
+    state = FusionState()
+    state.ledger = Ledger(complete=True)
+    place = (0.0, 0.0, 0.0)
+    fold_tick(state, 0.5, [Node(t=0.0, node="ff1", role="responder", position_m=place, sigma_m=0.1)])
+    for second in range(1, stood_s + 2):
+        step = (0.0, 0.0, 0.0) if second <= stood_s else (1.0, 0.0, 0.0)
+        t = float(second)
+        reading = Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=step, heading_rad=-0.001 * t)
+        fold_tick(state, t, [reading])
+    bias = state.graph.rows(state.nodes["ff1"].unit).start + 1
+    sigma = math.sqrt(state.graph.covariance()[bias, bias])
+    ((told_t, _, _, value, told_sigma, _),) = state.ledger.table("singles")
+    assert told_t <= stood_s, "what he turns as he goes is no bias"
+    assert value == pytest.approx(0.001)
+    assert told_sigma < 0.3 * physics.SET_OFF_BIAS_RADPS
+    assert physics.SET_OFF_BIAS_RADPS <= sigma < 1.1 * physics.SET_OFF_BIAS_RADPS

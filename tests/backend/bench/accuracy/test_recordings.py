@@ -15,6 +15,7 @@ from backend.recordings.datasets import footimu_vicon
 from estimator.evaluate import Errors
 from estimator.measurements.range import Range
 from estimator.simulate import Report
+from tests.backend.bench.accuracy.plaza2 import plaza2
 
 BOOTS = [f"footimu_vicon:{walk}" for walk in footimu_vicon.RECORDINGS]
 WALKS = ["uwb_outdoor_hanyang:LOS_A1", "uwb_outdoor_hanyang:NLOS_A1"]
@@ -50,6 +51,20 @@ def test_plaza1_smoothed_stays_within_90_cm_and_places_all_its_beacons(shared_da
     found = judge(tracks, case.truth, smoothed.heights).errors
     assert found.rmse_m <= 0.9
     assert found.aligned_rmse_m <= 0.21
+
+
+def test_plaza2_whose_gyro_is_biased_by_half_a_degree_a_second_is_tracked_within_a_metre(
+    tmp_path: Path,
+) -> None:
+    """Best known (estimation.md, point 2): 1.6 m online with bias, ZARU and range scale, 6.7 m without."""
+    case = plaza2(tmp_path)
+    online, smoothed = (errors_of(case, "kirchhoff", mode) for mode in ("online", "smoothed"))
+    assert online.rmse_m <= 1.0
+    assert online.aligned_rmse_m <= 0.5
+    assert online.coverage >= 0.9
+    assert smoothed.rmse_m <= 0.9
+    assert smoothed.aligned_rmse_m <= 0.3
+    assert smoothed.coverage >= 0.9
 
 
 @pytest.mark.parametrize("walk", WALKS)
