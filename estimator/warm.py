@@ -13,6 +13,7 @@ from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.report import shown
 from estimator.fusion.rows import FIELDS, ONE
 from estimator.fusion.silence import wandered_m2
+from estimator.fusion.swings import swung_m2
 from estimator.fusion.update import odd, tally
 from estimator.fusion.way import End, offset
 from estimator.graph.dense import factorise, inverse
@@ -20,6 +21,7 @@ from estimator.graph.kernels import eliminate, selected_inverse, strongest, subs
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
 from estimator.graph.scatter import add_motion, add_part, couple, localise, scatter_rows
+from estimator.graph.triangular import inverted
 from estimator.graph.variable import Variable
 from estimator.inertial.advancing import advance
 from estimator.inertial.boot import Boot
@@ -132,6 +134,8 @@ def _warm_filter() -> None:
     graph.advance(rows, graph.reference[rows], straight, straight)
     graph.add_measurements(rows, np.ones((1, 3)), np.ones(1), np.zeros(1))
     shown(np.zeros(1, dtype=np.intp), graph.reference, inverse(factorise(graph.information)))
+    inverted(graph.storage()[0], np.eye(3))
+    swung_m2(np.zeros((1, 2, 1)), np.ones(1))
     walked(np.zeros((1, 12)), graph.reference)
     wandered_m2(1.0, 0.0)
     free_motion("responder", 1.0)

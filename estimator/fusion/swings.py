@@ -7,6 +7,7 @@ Bar-Shalom et al. 2001, 10.3, but in closed form and for any angle).
 """
 
 import numpy as np
+from numba import njit
 
 from estimator.fusion.arcs import fallen_back
 from estimator.fusion.nodes import NodeState
@@ -42,10 +43,22 @@ def swung_m2(across: Array, variance: Array) -> Array:
     """
     if not len(variance):
         return np.zeros((len(across), 2, 2))
-    moved = (across**2).sum(axis=1) / variance
-    most = np.argmax(moved, axis=1)
-    own = np.take_along_axis(across, most[:, None, None], axis=2)[:, :, 0]
-    return arc_m2(own, own, variance[most])
+    return swung_most_m2(np.ascontiguousarray(across), np.ascontiguousarray(variance))
+
+
+@njit(cache=True, error_model="numpy")
+def swung_most_m2(across: Array, variance: Array) -> Array:
+    """`swung_m2` for one heading at least."""
+    m = len(across)
+    own, known = np.empty((m, 2)), np.empty(m)
+    for i in range(m):
+        most, farthest = 0, -1.0
+        for h in range(len(variance)):
+            moved = (across[i, 0, h] ** 2 + across[i, 1, h] ** 2) / variance[h]
+            if moved > farthest:
+                most, farthest = h, moved
+        own[i, 0], own[i, 1], known[i] = across[i, 0, most], across[i, 1, most], variance[most]
+    return arcs_m2(own, own, known)
 
 
 def unbend(state: FusionState, node: NodeState) -> None:
@@ -76,12 +89,20 @@ def arc_m2(one: Array, other: Array, variance: Array) -> Array:
         other: of another place, or of the same, … × 2.
         variance: v of the heading, … (rad²).
     """
-    known = np.maximum(variance, 1e-12)[..., None]
-    aside, other_aside = one / known, other / known
-    along = np.stack([aside[..., 1], -aside[..., 0]], axis=-1)
-    other_along = np.stack([other_aside[..., 1], -other_aside[..., 0]], axis=-1)
-    sine = 0.5 * -np.expm1(-2.0 * variance) - variance
-    cosine = np.asarray(fallen_back(variance))
-    found = sine[..., None, None] * aside[..., :, None] * other_aside[..., None, :]
-    found += cosine[..., None, None] * along[..., :, None] * other_along[..., None, :]
-    return np.asarray(found)
+    flat = (np.ascontiguousarray(one).reshape(-1, 2), np.ascontiguousarray(other).reshape(-1, 2))
+    return arcs_m2(*flat, np.ascontiguousarray(variance).ravel()).reshape(*variance.shape, 2, 2)
+
+
+@njit(cache=True, error_model="numpy")
+def arcs_m2(one: Array, other: Array, variance: Array) -> Array:
+    """`arc_m2` of m places, m × 2 × 2."""
+    found, cosine = np.empty((len(variance), 2, 2)), fallen_back(variance)
+    for i in range(len(variance)):
+        sine, known = 0.5 * -np.expm1(-2.0 * variance[i]) - variance[i], max(variance[i], 1e-12)
+        aside_e, aside_n = one[i, 0] / known, one[i, 1] / known
+        other_e, other_n = other[i, 0] / known, other[i, 1] / known
+        found[i, 0, 0] = sine * aside_e * other_e + cosine[i] * aside_n * other_n
+        found[i, 0, 1] = sine * aside_e * other_n - cosine[i] * aside_n * other_e
+        found[i, 1, 0] = sine * aside_n * other_e - cosine[i] * aside_e * other_n
+        found[i, 1, 1] = sine * aside_n * other_n + cosine[i] * aside_e * other_e
+    return found

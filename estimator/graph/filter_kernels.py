@@ -65,9 +65,9 @@ def carry(matrix: Array, vector: Array, n: int, rows: Indices, transition: Array
     g, d = rows.shape
     flat = rows.ravel()
     turned, pulls = np.zeros((g * d, n)), np.zeros(g * d)
-    back, before = np.empty((g, d, d)), np.empty(d)
+    back, before, known = np.empty((g, d, d)), np.empty(d), np.empty((d, d))
     for i in range(g):
-        back[i] = np.linalg.inv(transition[i])
+        invert(transition[i], back[i])
         for a in range(d):
             own = turned[i * d + a]
             for b in range(d):
@@ -95,7 +95,10 @@ def carry(matrix: Array, vector: Array, n: int, rows: Indices, transition: Array
             turned[r, flat[s]] = turned[s, flat[r]] = mean
             kernel[r, s] = kernel[s, r] = mean
     for i in range(g):
-        kernel[i * d : (i + 1) * d, i * d : (i + 1) * d] += np.linalg.inv(noise[i])
+        invert(noise[i], known)
+        for a in range(d):
+            for b in range(d):
+                kernel[i * d + a, i * d + b] += known[a, b]
     for r in range(g * d):
         vector[flat[r]] = pulls[r]
         row, own = matrix[flat[r]], turned[r]
@@ -104,6 +107,39 @@ def carry(matrix: Array, vector: Array, n: int, rows: Indices, transition: Array
         for j in range(n):
             matrix[j, flat[r]] = own[j]
     return kernel
+
+
+@njit(cache=True, error_model="numpy")
+def invert(matrix: Array, found: Array) -> None:
+    """A⁻¹ of a regular matrix of a few rows, by Gauss and Jordan: sooner done than LAPACK is called.
+
+    Args:
+        matrix: A, n × n.
+        found: takes the inverse, n × n.
+    """
+    n, rest = len(matrix), matrix.copy()
+    for i in range(n):
+        for j in range(n):
+            found[i, j] = 1.0 if i == j else 0.0
+    for j in range(n):
+        best = j
+        for i in range(j + 1, n):
+            if abs(rest[i, j]) > abs(rest[best, j]):
+                best = i
+        if best != j:
+            for c in range(n):
+                rest[j, c], rest[best, c] = rest[best, c], rest[j, c]
+                found[j, c], found[best, c] = found[best, c], found[j, c]
+        unscale = 1.0 / rest[j, j]
+        for c in range(n):
+            rest[j, c] *= unscale
+            found[j, c] *= unscale
+        for i in range(n):
+            share = rest[i, j]
+            if i != j and share != 0.0:
+                for c in range(n):
+                    rest[i, c] -= share * rest[j, c]
+                    found[i, c] -= share * found[j, c]
 
 
 @njit(cache=True, error_model="numpy")

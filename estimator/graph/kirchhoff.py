@@ -12,7 +12,11 @@ import numpy as np
 
 from estimator.graph.dense import Array, Cholesky, Indices, factorise, inverse, mended, solve
 from estimator.graph.filter_kernels import advance, loosen, scatter
+from estimator.graph.triangular import inverted
 from estimator.graph.variable import DIMENSION, Variable
+
+SMALL = 64
+"""Up to so many rows plain loops invert L sooner than LAPACK has been called for each part of it."""
 
 
 class Kirchhoff:
@@ -211,6 +215,10 @@ class Kirchhoff:
 
     def covariance(self) -> Array:
         """Σ = L⁻¹ (eq. 5), n × n; the block of a node is its effective resistance to the base."""
+        if self.size <= SMALL:
+            found = np.empty((self.size, self.size))
+            if inverted(self._matrix, found):
+                return found
         return inverse(self.factorise())
 
 
@@ -223,6 +231,9 @@ def marginalised(matrix: Array, vector: Array, gone: Indices, kept: Indices) -> 
         gone: rows to be left out.
         kept: rows to be kept, in the order in which they are wanted.
     """
+    if len(gone) == 0:
+        left = matrix[np.ix_(kept, kept)]
+        return 0.5 * (left + left.T), vector[kept]
     coupling = matrix[np.ix_(gone, kept)]
     block = matrix[np.ix_(gone, gone)]
     try:

@@ -12,6 +12,9 @@ from numba import njit
 
 from estimator.graph.dense import Array, Indices
 
+MOST = 1e300
+"""What a reading costs at most, in log likelihood: of two infinite costs none would be the lower one."""
+
 
 class Mixture(NamedTuple):
     """Good noise N(0, σ²), or with probability `outliers` bad noise N(shift, spread² + σ²).
@@ -60,16 +63,13 @@ def weigh(
     """
     m = len(residual)
     information, pulled, good = np.empty(m), np.empty(m), np.empty(m)
-    known, usual, rare = np.nan, 0.0, 0.0
     for i in range(m):
-        if outliers[i] != known:  # those of one technology follow each other
-            known, usual, rare = outliers[i], np.log1p(-outliers[i]), np.log(outliers[i])
         good_variance = sigma[i] ** 2
         bad_variance = good_variance + spread[i] ** 2
         good_total, bad_total = good_variance + predicted[i], bad_variance + predicted[i]
-        log_good = usual - 0.5 * (np.log(good_total) + residual[i] ** 2 / good_total)
-        log_bad = rare - 0.5 * (np.log(bad_total) + (residual[i] - shift[i]) ** 2 / bad_total)
-        good[i] = 1.0 / (1.0 + np.exp(min(max(log_bad - log_good, -700.0), 700.0)))
+        lead = 0.5 * (residual[i] ** 2 / good_total - (residual[i] - shift[i]) ** 2 / bad_total)
+        odds = outliers[i] / (1.0 - outliers[i]) * np.sqrt(good_total / bad_total)
+        good[i] = 1.0 / (1.0 + odds * np.exp(min(max(lead, -700.0), 700.0)))
         from_good, from_bad = good[i] / good_variance, (1.0 - good[i]) / bad_variance
         information[i] = from_good + from_bad
         pulled[i] = residual[i] - shift[i] * from_bad / information[i]
@@ -88,15 +88,17 @@ def mixture_cost(residual: Array, sigma: Array, outliers: Array, shift: Array, s
         spread: see `Mixture`, m.
     """
     cost = np.empty(len(residual))
-    known, usual, rare = np.nan, 0.0, 0.0
     for i in range(len(residual)):
-        if outliers[i] != known:
-            known, usual, rare = outliers[i], np.log1p(-outliers[i]), np.log(outliers[i])
-        good = sigma[i] ** 2
-        bad = good + spread[i] ** 2
-        from_good = usual - 0.5 * (np.log(good) + residual[i] ** 2 / good)
-        from_bad = rare - 0.5 * (np.log(bad) + (residual[i] - shift[i]) ** 2 / bad)
-        cost[i] = -np.logaddexp(from_good, from_bad)
+        bad_variance = sigma[i] ** 2 + spread[i] ** 2
+        usual, rare = (1.0 - outliers[i]) / sigma[i], outliers[i] / np.sqrt(bad_variance)
+        by_good = min(0.5 * (residual[i] / sigma[i]) ** 2, MOST)
+        by_bad = min(0.5 * (residual[i] - shift[i]) ** 2 / bad_variance, MOST)
+        # One exponential and one logarithm take all of the time: the likelier way to be so far off is put
+        # before the sum, so that the sum is never nil.
+        if by_good < by_bad or rare == 0.0:
+            cost[i] = by_good - np.log(usual + rare * np.exp(min(by_good - by_bad, 0.0)))
+        else:
+            cost[i] = by_bad - np.log(rare + usual * np.exp(by_bad - by_good))
     return cost
 
 

@@ -155,3 +155,28 @@ def solved(factor: Array, unscale: Array, right: Array) -> Array:
             total -= factor[i, j] * answer[j]
         answer[i] = total / factor[i, i]
     return answer * unscale
+
+
+@njit(cache=True, error_model="numpy")
+def inverted(matrix: Array, found: Array) -> bool:
+    """A⁻¹ of a symmetric positive definite matrix, exactly symmetric.
+
+    Args:
+        matrix: A, n × n or larger.
+        found: takes the inverse, n × n.
+
+    Returns:
+        False where A is not finite, or far from positive definite.
+    """
+    n = len(found)
+    factor, unscale, half = np.zeros((n, n)), np.empty(n), np.zeros((n, n))
+    if not factorised(matrix[:n, :n], factor, unscale):
+        return False
+    for i in range(n):
+        half[i, i] = unscale[i]
+    forward_all(factor, half, np.arange(n))
+    product = np.dot(half.T, half)
+    for i in range(n):
+        for j in range(i, n):
+            found[i, j] = found[j, i] = product[i, j]
+    return True

@@ -236,9 +236,8 @@ class Ends:
         nodes: Nodes | None = None,
     ) -> None:
         m, numbers, t = len(numbers), np.ascontiguousarray(numbers), np.ascontiguousarray(t)
-        lives = np.array([(w.first, w.last) for w in layout.walks], dtype=np.int64).reshape(-1, 2)
         known = nodes_of(layout) if nodes is None else nodes
-        stood = stand(known, numbers, t, nearest, layout.grid, layout.times, lives)
+        stood = stand(known, numbers, t, nearest, layout.grid, layout.times, layout.spans)
         self.stood = stood
         laid = Laid(np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)))
         for walk in layout.walks if m else ():

@@ -9,6 +9,7 @@ from estimator.fusion.pairs import UNTOLD_POWER
 from estimator.fusion.prior import Key, Prior
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
+from estimator.graph.kernels import Integers
 from estimator.graph.variable import Variable
 from estimator.smoothing.walks import STATES
 from estimator.smoothing.ways import Way
@@ -42,6 +43,7 @@ class Layout:
         since_t: epoch from which on it reaches (s).
         grid: epochs of the keyframes, k, ascending (s).
         walks: the moving nodes, each with six columns of every keyframe.
+        spans: first and last keyframe of each walk, walks × 2.
         times: the epoch of each walk at each keyframe, k × walks: the grid's, inside its own life; at the
             first one, what the prior tells of.
         width: columns of a keyframe.
@@ -69,6 +71,8 @@ class Layout:
         inner = inner[(inner > since_t + 1e-3) & (inner < until - 1e-3)]
         self.grid: Array = np.concatenate([[since_t], inner, [max(until, since_t + 1e-3)]])
         self.walks = [self._walk(nodes[n], *alive[n], ends[n]) for n in kept]
+        spans = [(walk.first, walk.last) for walk in self.walks]
+        self.spans: Integers = np.array(spans, dtype=np.int64).reshape(-1, 2)
         self.column_of = {w.number: STATES * i for i, w in enumerate(self.walks)}
         lives = np.array([[max(alive[n][0], since_t), ends[n]] for n in kept]).reshape(-1, 2)
         self.times: Array = np.clip(self.grid[:, None], lives[:, 0], np.maximum(lives[:, 1], lives[:, 0]))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from estimator.graph.filter_kernels import carry, loosen, scatter
+from estimator.graph.filter_kernels import carry, invert, loosen, scatter
 from estimator.graph.triangular import STRIP
 
 
@@ -45,6 +45,16 @@ def test_moving_groups_is_moving_the_covariance_and_the_mean(seed: int, groups: 
     assert (matrix[:n, :n] == matrix[:n, :n].T).all()
     assert (matrix[n:] == 7.0).all()
     assert (vector[n:] == 7.0).all()
+
+
+@given(st.integers(0, 10_000), st.integers(1, 8))
+def test_a_small_matrix_is_inverted_wherever_its_zeros_are(seed: int, n: int) -> None:
+    chance = np.random.default_rng(seed)
+    matrix = (np.eye(n) + chance.normal(0.0, 0.1, (n, n)))[chance.permutation(n)]
+    matrix[np.abs(matrix) < 0.1] = 0.0
+    found = np.empty((n, n))
+    invert(matrix, found)
+    assert found == pytest.approx(np.linalg.inv(matrix))
 
 
 def test_a_kernel_that_is_not_positive_definite_changes_nothing() -> None:

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.graph.dense import Array
-from estimator.graph.triangular import BLOCK, STRIP, factorised, forward, forward_all, solved
+from estimator.graph.triangular import BLOCK, STRIP, factorised, forward, forward_all, inverted, solved
 
 
 def positive(chance: np.random.Generator, n: int) -> Array:
@@ -29,6 +29,18 @@ def test_factor_and_solution_are_those_of_numpy(seed: int, n: int) -> None:
     )
     answer = solved(factor, unscale, right)
     assert answer * scale == pytest.approx(np.linalg.solve(matrix / scale / scale[:, None], right / scale))
+
+
+@given(st.integers(0, 10_000), st.integers(0, 2 * BLOCK), st.integers(0, 3))
+def test_the_inverse_is_that_of_numpy_and_symmetric(seed: int, n: int, spare: int) -> None:
+    matrix = np.full((n + spare, n + spare), 7.0)
+    matrix[:n, :n] = positive(np.random.default_rng(seed), n)
+    found, scale = np.empty((n, n)), np.sqrt(np.diagonal(matrix)[:n])
+    assert inverted(matrix, found)
+    usual = np.linalg.inv(matrix[:n, :n] / scale / scale[:, None])
+    assert found * scale * scale[:, None] == pytest.approx(usual)
+    assert (found == found.T).all()
+    assert not inverted(-np.eye(3), np.empty((3, 3)))
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -1.0, 0.0])
