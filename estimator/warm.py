@@ -5,6 +5,7 @@ import numpy as np
 from estimator.fusion.descent import descend
 from estimator.fusion.echoes import tell as tell_echoes
 from estimator.fusion.free import free_motion
+from estimator.fusion.gyros import prior_sigma_radps
 from estimator.fusion.ledger import COLUMNS
 from estimator.fusion.links import NEW
 from estimator.fusion.modes import Sought, costs_of, find_modes
@@ -139,6 +140,7 @@ def _warm_filter() -> None:
     walked(np.zeros((1, 12)), graph.reference)
     wandered_m2(1.0, 0.0)
     free_motion("responder", 1.0)
+    prior_sigma_radps(0.0, 0.0, np.ones((1, 2)))
     table = np.full((1, FIELDS), 0.5)
     table[0, :2] = ONE, 0.0
     found = descend(table, graph.information.copy(), graph.vector, graph.reference, 1)

@@ -11,9 +11,11 @@ import math
 from collections.abc import Iterable
 
 import numpy as np
+from numba import njit
 
 from estimator.fusion import physics
 from estimator.fusion.calibration import Told
+from estimator.graph.dense import Array
 
 SPREADS = ((np.arange(10) + 0.5) / 10.0 * physics.BIAS_SIGMA_MOST_RADPS) ** 2
 """Variances that stand for all (rad²/s²)."""
@@ -31,19 +33,31 @@ def bias_sigma_radps(own: Told, told: Iterable[Told]) -> float:
     Returns:
         It, at least what all spreads together give to the mean and to the variance of the bias.
     """
+    said = [one for one in told if one[0] > 0.0]
+    return prior_sigma_radps(*own, np.array(said, dtype=np.float64).reshape(-1, 2))
+
+
+@njit(cache=True, error_model="numpy")
+def prior_sigma_radps(information: float, product: float, told: Array) -> float:
+    """`bias_sigma_radps` of a unit about whose bias readings say these two things.
+
+    Args:
+        information: what they say of it (s²/rad²); nil: nothing.
+        product: the same (s/rad).
+        told: what they say of each unit of which they say anything, m × 2.
+    """
     logarithm = np.zeros(len(SPREADS))
-    for information, product in told:
-        if information > 0.0:
-            spread = 1.0 / information + SPREADS
-            logarithm -= 0.5 * (np.log(spread) + (product / information) ** 2 / spread)
+    for i in range(len(told)):
+        spread = 1.0 / told[i, 0] + SPREADS
+        logarithm -= 0.5 * (np.log(spread) + (told[i, 1] / told[i, 0]) ** 2 / spread)
     weight = np.exp(logarithm - logarithm.max())
     weight /= weight.sum()
-    if not own[0] > 0.0:
-        return math.sqrt(float(weight @ SPREADS))
-    alone = 1.0 / own[0]
+    if not information > 0.0:
+        return math.sqrt((weight * SPREADS).sum())
+    alone = 1.0 / information
     share = SPREADS / (SPREADS + alone)
-    mean = float(weight @ share)
+    mean = (weight * share).sum()
     # The variance that all spreads together leave, over that of the readings alone.
-    left = mean + (own[1] ** 2 / own[0]) * float(weight @ (share - mean) ** 2)
+    left = mean + (product**2 / information) * (weight * (share - mean) ** 2).sum()
     kept = min(max(mean, left), MOST_KEPT)
     return math.sqrt(alone * kept / (1.0 - kept))

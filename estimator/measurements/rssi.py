@@ -39,7 +39,8 @@ def rssi_slope(squared_m2: float, exponent: float) -> float:
 @njit(cache=True)
 def rssi_at(squared_m2: float, power_dbm: float, exponent: float) -> Along:
     """One power at ‖a − b‖² (m²); see `predict_rssi`."""
-    tens = 5.0 * np.log10(squared_m2 + ANTENNA_M * ANTENNA_M)
+    # The natural logarithm takes half as long as the other one.
+    tens = 5.0 / np.log(10.0) * np.log(squared_m2 + ANTENNA_M * ANTENNA_M)
     return Along(power_dbm - exponent * tens, rssi_slope(squared_m2, exponent), 1.0, -tens)
 
 

@@ -19,6 +19,8 @@ from estimator.graph.scatter import add_part
 from estimator.smoothing.groups import Group
 from estimator.smoothing.strand import Strand
 
+NOTHING = factorise(np.zeros((0, 0)))
+
 
 class Remainder(NamedTuple):
     """What the keyframes before one say of it and of the border: a Kirchhoff matrix and its vector.
@@ -48,7 +50,7 @@ class Chain:
         self.lasting = len(groups[-1].lasting)
         self.promised = 0.0
         self._length = length
-        self._cholesky = factorise(np.zeros((0, 0)))
+        self._cholesky = NOTHING
 
     def damp(self, damping: float) -> None:
         """Raise the diagonal by a share of itself (Marquardt): a shorter step, and more along the slope."""

@@ -61,7 +61,8 @@ class Groups:
             held: walks that are held where they are, in no group.
         """
         count = width // STATES
-        self._width, self._held = width, np.isin(np.arange(count), list(held))
+        self._width, self._held = width, np.zeros(count, dtype=np.bool_)
+        self._held[list(held)] = True
         label, touched = np.arange(count), np.zeros((count, border), dtype=np.bool_)
         for columns in coupled:
             couple(self._moving(columns), width, STATES, label, touched)
@@ -72,17 +73,16 @@ class Groups:
             found.append(Group(walks, columns, np.flatnonzero(touched[walks].any(axis=0))))
         nothing = np.zeros(0, dtype=np.intp)
         self.each: tuple[Group, ...] = (*found, Group(nothing, nothing, np.arange(border)))
-        self._group = np.zeros(count, dtype=np.int64)
+        self._group, self._block = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
         self._place = np.full((len(self.each), width + border), -1, dtype=np.int64)
         for g, group in enumerate(self.each):
-            self._group[group.walks] = g
+            self._group[group.walks], self._block[group.walks] = g, np.arange(len(group.walks))
             self._place[g, group.columns] = np.arange(len(group.columns))
             self._place[g, width + group.lasting] = len(group.columns) + np.arange(len(group.lasting))
 
     def home(self, walk: int) -> tuple[int, int]:
         """The group of a walk, and which of the group's walks it is."""
-        group = int(self._group[walk])
-        return group, int(np.searchsorted(self.each[group].walks, walk))
+        return int(self._group[walk]), int(self._block[walk])
 
     def _moving(self, columns: Integers) -> Integers:
         """Columns without those of walks that are held."""

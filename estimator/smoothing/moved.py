@@ -77,12 +77,15 @@ def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) ->
     usual = costs_of(residual, sigma, rows.noise[:m], kinds == RANGE, rows.alike[:m])
     recent = chosen[(rows.pairs[chosen, 0] > now - recent_s) & (kinds[chosen] <= RSSI)]
     recent = recent[np.argsort(rows.pairs[recent, 0], kind="stable")]
+    measured = set(kinds[recent].tolist())
     found: list[tuple[float, Moved]] = []
     suspected = False
     for node in state.nodes.values():
         if node.mode != "static" or node.role == "anchor":
             continue
         for together in BY_KIND if solved.rests else (*ALL_KINDS, *BY_KIND):
+            if measured.isdisjoint(together):
+                continue
             kind = -1 if together in ALL_KINDS else together[0]
             own, mine, suspicious, since, before = ask(
                 recent, rows.pairs, node.index, kind, usual, cost, now - NEW_S

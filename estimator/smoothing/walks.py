@@ -147,28 +147,57 @@ def unit_motion(between: Array, durations_s: Array, states: Array) -> Motion:
     """
     count = len(durations_s)
     led, transition = led_by(states[:count], between[:, :3], between[:, 3:6], durations_s)
-    noise, residual = np.zeros((count, STATES, STATES)), np.empty((count, STATES))
+    noise, information = np.zeros((count, STATES, STATES)), np.zeros((count, STATES, STATES))
+    residual = np.empty((count, STATES))
     for i in range(count):
         scale = 1.0 + states[i, 5]
         for c in range(STATES):
             noise[i, c, c] = max(between[i, VARIANCES[c]], 0.0) + FLOOR[c]
             residual[i, c] = states[i + 1, c] - led[i, c]
-        turn = noise[i, 3, 3]
         # The noise is the unit's own: it is scaled with what it reports. Were it not, a smaller scale would
         # always fit better, for it makes every step's error smaller; so the derivative is by the way that
         # was gone.
         for r in range(2):
             noise[i, r, r] *= scale**2
             transition[i, r, 5] = (states[i + 1, r] - states[i, r]) / scale
-        for r in range(2):
-            lever = transition[i, r, 3]
-            for c in range(2):
-                noise[i, r, c] += lever * transition[i, c, 3] * turn / 3.0
-            noise[i, r, 3] += lever * 0.5 * turn
-            noise[i, 3, r] += lever * 0.5 * turn
+        for c in range(STATES):
+            information[i, c, c] = 1.0 / noise[i, c, c]
+        swing(transition[i, 0, 3], transition[i, 1, 3], noise[i], information[i])
         transition[i, 0, 3] = states[i, 1] - states[i + 1, 1]
         transition[i, 1, 3] = states[i + 1, 0] - states[i, 0]
-    return Motion(transition, noise, residual, inverses(noise))
+    return Motion(transition, noise, residual, information)
+
+
+@njit(cache=True)
+def swing(lever_e: float, lever_n: float, noise: Array, information: Array) -> None:
+    """Add what a heading's random walk on the way does to the end of a step, in closed form.
+
+    Given where the heading ends, its walk still moves the end of a lever l sideways by v l² / 12: with the
+    step's own variances that is a sum, so that nothing cancels.
+
+    Args:
+        lever_e: derivative of the end's place by the heading, east (m).
+        lever_n: the same, north (m).
+        noise: Q, 6 × 6, so far only its diagonal; changed.
+        information: Q⁻¹, 6 × 6, the same.
+    """
+    turn, east, north = noise[3, 3], noise[0, 0], noise[1, 1]
+    half_e, half_n, rest = 0.5 * lever_e, 0.5 * lever_n, turn / 12.0
+    noise[0, 0] += lever_e * lever_e * turn / 3.0
+    noise[1, 1] += lever_n * lever_n * turn / 3.0
+    noise[0, 1] = noise[1, 0] = lever_e * lever_n * turn / 3.0
+    noise[0, 3] = noise[3, 0] = half_e * turn
+    noise[1, 3] = noise[3, 1] = half_n * turn
+    unscale = 1.0 / (east * north + rest * (east * lever_n * lever_n + north * lever_e * lever_e))
+    by_e = (north + rest * lever_n * lever_n) * unscale
+    by_n = (east + rest * lever_e * lever_e) * unscale
+    by_both = -rest * lever_e * lever_n * unscale
+    pulled_e, pulled_n = by_e * half_e + by_both * half_n, by_both * half_e + by_n * half_n
+    information[0, 0], information[1, 1] = by_e, by_n
+    information[0, 1] = information[1, 0] = by_both
+    information[0, 3] = information[3, 0] = -pulled_e
+    information[1, 3] = information[3, 1] = -pulled_n
+    information[3, 3] += half_e * pulled_e + half_n * pulled_n
 
 
 class Free(NamedTuple):

@@ -128,6 +128,16 @@ def test_a_heading_that_walks_randomly_moves_the_end_of_a_straight_way_as_told()
     assert seen == pytest.approx(noise[np.ix_([1, 3], [1, 3])], rel=0.05)
 
 
+def test_the_information_of_a_step_is_the_inverse_of_its_noise() -> None:
+    chance, k = np.random.default_rng(3), 50
+    between = np.concatenate([chance.normal(0.0, 30.0, (k, 6)), 10.0 ** chance.uniform(-9.0, 1.0, (k, 6))], 1)
+    states = chance.normal(0.0, 10.0, (k + 1, STATES)) * np.array([1.0, 1.0, 1.0, 1.0, 1e-4, 1e-2])
+    motion = unit_motion(between, np.full(k, 4.0), states)
+    scale = np.sqrt(np.diagonal(motion.noise, axis1=1, axis2=2))
+    whole = motion.information @ motion.noise / scale[:, None, :] * scale[:, :, None]
+    assert whole == pytest.approx(np.broadcast_to(np.eye(STATES), whole.shape), abs=1e-6)
+
+
 def test_the_motion_of_a_node_without_pdr_is_the_same_in_one_step_and_in_two() -> None:
     one = free_motions("responder", np.array([5.0]))
     two = free_motions("responder", np.array([2.0, 3.0]))
