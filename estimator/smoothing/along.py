@@ -17,6 +17,7 @@ from estimator.measurements.bearing import within_pi
 from estimator.smoothing.flips import Flip, end_of, nearest
 from estimator.smoothing.imaged import Loose, imaged
 from estimator.smoothing.layout import Layout
+from estimator.smoothing.parts import Parts
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.turns import all_round, facing, reports_from, turns_whole
 
@@ -30,7 +31,7 @@ HEADINGS = 2
 
 
 class Costed(NamedTuple):
-    """An image of a way, and what it costs unsolved, in log likelihood."""
+    """An image of a way, and what it costs more than that way, unsolved, in log likelihood."""
 
     cost: float
     flip: Flip
@@ -68,24 +69,22 @@ def company(problem: Problem, index: int, loose: Loose) -> list[int]:
         found.append(max(others, key=lambda j: int(heard[j, found].sum())))
 
 
-def costed(
-    problem: Problem, x: Array, index: int, loose: Loose, flip: Flip, others: list[int]
-) -> list[Costed]:
+def costed(parts: Parts, index: int, loose: Loose, flip: Flip, others: list[int]) -> list[Costed]:
     """An image of a way, alone and with company, as its unit faces and as it may face then.
 
     Args:
-        problem: of a window.
-        x: its estimate, flat.
+        parts: of a window, with all others where they are in its estimate.
         index: of the walk.
         loose: see `imaged.Loose`.
         flip: the image.
         others: who may go along.
     """
-    layout, motions = problem.layout, problem.motions(x)
+    layout, x = parts.problem.layout, parts.x
 
     def told(one: Flip) -> Costed:
-        beside = problem.beside({index, *(i for i, _ in one.along)}, motions)
-        return Costed(beside.at(imaged(layout, x, index, one, loose)).cost, one)
+        # A way of minutes that is turned as a whole is far off at its end, however well it fits once solved.
+        part = parts.of({index, *(i for i, _ in one.along)}, parts.stages(one)[0])
+        return Costed(part.more(imaged(layout, x, index, one, loose)), one)
 
     turned = [told(flip._replace(image=image)) for image in _faced(layout, x, index, flip, loose)]
     found = [told(flip), *_lowest(turned)]

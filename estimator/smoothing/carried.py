@@ -1,7 +1,8 @@
 """What has left the window, laid on its unknowns: the prior of its first keyframe and of the border."""
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from copy import copy
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from estimator.graph.kirchhoff import marginalised
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.groups import Group
 from estimator.smoothing.layout import Layout
+from estimator.smoothing.numbers import Numbers
 from estimator.smoothing.turned import (
     Turning,
     change_pairs,
@@ -66,6 +68,31 @@ class Carried:
         base_m = np.array(layout.state.base_place()[:2])
         self.pivot_m = pivot(self._matrix, self._reference, changed, base_m)
         self._turning = np.concatenate([self._places, self._speeds])
+
+    def part(self, numbers: Numbers, x: Array) -> Self:
+        """The same of a part of the window, with all walks that it has not held where they are.
+
+        Args:
+            numbers: of the part.
+            x: the window's estimate, flat.
+        """
+        other, moved = copy(self), self._moved(x, self._turned_by(x))
+        layout, at = numbers.layout, numbers.place[self._at]
+        kept, held = np.flatnonzero(at >= 0), np.flatnonzero(at < 0)
+        inside = (pairs[(at[pairs] >= 0).all(axis=1)] for pairs in (self._places, self._speeds))
+        places, speeds = (np.searchsorted(kept, pairs) for pairs in inside)
+        vars(other).update(
+            _size=layout.length * layout.width,
+            _width=layout.width,
+            _at=at[kept],
+            _reference=self._reference[kept],
+            _matrix=self._matrix[np.ix_(kept, kept)],
+            _vector=self._vector[kept] - self._matrix[np.ix_(kept, held)] @ moved[held],
+            _places=places,
+            _speeds=speeds,
+            _turning=np.concatenate([places, speeds]),
+        )
+        return other
 
     def first(self, x: Array) -> Array:
         """The estimate with the border where the prior was linearised, turned as the map is now, flat."""

@@ -39,7 +39,7 @@ class Chain:
 
     Attributes:
         strands: the chain of each group; of the last one there is only the border.
-        width: n, with those of walks that are held, which are in no group and stay where they are.
+        width: n.
         lasting: s.
         promised: after `solve`: half the product of the gradient and the step, what a parabola gains by it.
     """

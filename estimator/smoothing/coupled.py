@@ -1,7 +1,5 @@
 """How the unknowns of a window hang together: where its readings, its priors and what it carries go."""
 
-from collections.abc import Collection
-
 import numpy as np
 
 from estimator.graph.dense import Indices
@@ -23,9 +21,7 @@ class Coupled:
         shared: what each group has in common with the prior of the window.
     """
 
-    def __init__(
-        self, layout: Layout, rows: Rows, at: Indices, carried: Carried | None, held: Collection[int]
-    ) -> None:
+    def __init__(self, layout: Layout, rows: Rows, at: Indices, carried: Carried | None) -> None:
         """Find them.
 
         Args:
@@ -33,10 +29,9 @@ class Coupled:
             rows: its readings.
             at: flat columns of the walks' own priors.
             carried: the prior of the window; None: there is none.
-            held: indices of walks that are held where they are.
         """
         hang_together = [rows.columns] if carried is None else [rows.columns, carried.coupled]
-        self.groups = groups = Groups(layout.width, layout.border, hang_together, held)
+        self.groups = groups = Groups(layout.width, layout.border, hang_together)
         self.rows: Placed = groups.placed(rows.slab, rows.columns)
         pairs = len(rows.pairs)
         self.pairs: list[Integers] = [part[: np.searchsorted(part, pairs)] for part in self.rows.parts]

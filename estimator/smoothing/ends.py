@@ -247,11 +247,6 @@ class Ends:
         self.table = Table(stood.kind, stood.flat, stood.fixed_m, delta_m, moment, t - stood.since_t)
 
     @property
-    def unit(self) -> NDArray[np.bool_]:
-        """Whether each is of a node with a PDR unit, m."""
-        return np.asarray(self.table.kind == UNIT)
-
-    @property
     def slab(self) -> Integers:
         """Keyframe of each, m; 0 where it stands."""
         return self.stood.slab

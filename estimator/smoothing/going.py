@@ -1,11 +1,13 @@
 """How all the walks of a window go between their keyframes."""
 
-from collections.abc import Mapping
+from copy import copy
+from typing import Self
 
 import numpy as np
 
 from estimator.graph.dense import Array
 from estimator.smoothing.layout import Layout, Walk
+from estimator.smoothing.numbers import Numbers
 from estimator.smoothing.walks import STATES, Free, Motion, free_motions, reckon, unit_motion
 
 
@@ -28,19 +30,22 @@ class Going:
             return durations, free_motions(walk.node.role, durations)
         return durations, walk.way.between(times[:-1], times[1:])
 
-    def motions(self, x: Array, held: Mapping[int, Motion]) -> list[Motion]:
-        """Each walk's motion at an estimate.
+    def part(self, numbers: Numbers) -> Self:
+        """How those walks go that a part of the window has, up to its last keyframe."""
+        ways = []
+        for i, walk in zip(numbers.walks, numbers.layout.walks, strict=True):
+            steps = walk.last - walk.first
+            durations, between = self._ways[i]
+            some = between.first(steps) if isinstance(between, Free) else between[:steps]
+            ways.append((durations[:steps], some))
+        other = copy(self)
+        vars(other).update(_layout=numbers.layout, _ways=ways)
+        return other
 
-        Args:
-            x: the estimate, flat.
-            held: that of those walks of which it is known, by index.
-        """
+    def motions(self, x: Array) -> list[Motion]:
+        """Each walk's motion at an estimate, flat."""
         found = []
         for i, (walk, (durations, between)) in enumerate(zip(self._layout.walks, self._ways, strict=True)):
-            known = held.get(i)
-            if known is not None:
-                found.append(known)
-                continue
             states = self._layout.states(x, i)[walk.first : walk.last + 1].copy()
             if isinstance(between, Free):
                 found.append(between.motion(states))
@@ -68,7 +73,7 @@ class Going:
             within_s: how long after the next keyframe a way is bent by what was heard before it (s).
         """
         layout, there = self._layout, x.copy()
-        for i, (walk, motion) in enumerate(zip(layout.walks, self.motions(x, {}), strict=True)):
+        for i, (walk, motion) in enumerate(zip(layout.walks, self.motions(x), strict=True)):
             if walk.way is not None:
                 times = layout.times[walk.first : walk.last + 1, i]
                 bent = np.vstack([np.zeros(STATES), np.cumsum(motion.residual, axis=0)])

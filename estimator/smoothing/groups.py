@@ -1,6 +1,6 @@
 """Which walks of a window hang together: what direct readings do not couple meets in the border only."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -48,9 +48,7 @@ class Groups:
         each: the groups; the last one has no walks and all of the border: what touches nothing that moves.
     """
 
-    def __init__(
-        self, width: int, border: int, coupled: Sequence[Integers], held: Collection[int] = ()
-    ) -> None:
+    def __init__(self, width: int, border: int, coupled: Sequence[Integers]) -> None:
         """Find them.
 
         Args:
@@ -58,16 +56,14 @@ class Groups:
             border: columns of the border.
             coupled: rows of columns that belong together, each m × c: those of a keyframe first, those of the
                 border after them; −1: unused.
-            held: walks that are held where they are, in no group.
         """
         count = width // STATES
-        self._width, self._held = width, np.zeros(count, dtype=np.bool_)
-        self._held[list(held)] = True
+        self._width = width
         label, touched = np.arange(count), np.zeros((count, border), dtype=np.bool_)
         for columns in coupled:
-            couple(self._moving(columns), width, STATES, label, touched)
+            couple(columns, width, STATES, label, touched)
         found = []
-        for first in np.unique(label[~self._held]).tolist():
+        for first in np.unique(label).tolist():
             walks = np.flatnonzero(label == first)
             columns = (STATES * walks[:, None] + np.arange(STATES)).ravel()
             found.append(Group(walks, columns, np.flatnonzero(touched[walks].any(axis=0))))
@@ -84,17 +80,10 @@ class Groups:
         """The group of a walk, and which of the group's walks it is."""
         return int(self._group[walk]), int(self._block[walk])
 
-    def _moving(self, columns: Integers) -> Integers:
-        """Columns without those of walks that are held."""
-        if not self._held.any():
-            return columns
-        held = np.append(np.repeat(self._held, STATES), False)
-        return np.where(held[np.minimum(columns, self._width)], -1, columns)
-
     def placed(self, slab: Integers, columns: Integers) -> Placed:
         """Rows with columns as in `coupled`, each in its own group's numbering."""
         group = np.empty(len(columns), dtype=np.int64)
-        local = localise(self._moving(columns), self._width, STATES, self._group, self._place, group)
+        local = localise(columns, self._width, STATES, self._group, self._place, group)
         order = np.argsort(group, kind="stable")
         ends = np.searchsorted(group[order], np.arange(len(self.each) + 1)).tolist()
         return Placed(slab, local, [order[first:last] for first, last in pairwise(ends)])

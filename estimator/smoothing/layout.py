@@ -1,6 +1,8 @@
 """A window of an incident as one problem: who moves, who stands, how the numbers are laid out."""
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from copy import copy
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -71,8 +73,7 @@ class Layout:
         inner = inner[(inner > since_t + 1e-3) & (inner < until - 1e-3)]
         self.grid: Array = np.concatenate([[since_t], inner, [max(until, since_t + 1e-3)]])
         self.walks = [self._walk(nodes[n], *alive[n], ends[n]) for n in kept]
-        spans = [(walk.first, walk.last) for walk in self.walks]
-        self.spans: Integers = np.array(spans, dtype=np.int64).reshape(-1, 2)
+        self.spans = spans_of(self.walks)
         self.column_of = {w.number: STATES * i for i, w in enumerate(self.walks)}
         lives = np.array([[max(alive[n][0], since_t), ends[n]] for n in kept]).reshape(-1, 2)
         self.times: Array = np.clip(self.grid[:, None], lives[:, 0], np.maximum(lives[:, 1], lives[:, 0]))
@@ -108,6 +109,22 @@ class Layout:
                 self.technologies[technology_key(self.state, variable)] = start
                 start += 2
         self.border = start
+
+    def part(self, walks: Sequence[int], until: int) -> Self:
+        """Some of its walks up to some keyframe, beside all of its border.
+
+        Args:
+            walks: their indices, ascending; each begins before that keyframe.
+            until: the keyframe.
+        """
+        other = copy(self)
+        other.grid, other.times = self.grid[: until + 1], self.times[: until + 1, list(walks)]
+        some = [self.walks[i] for i in walks]
+        other.walks = [walk._replace(last=min(walk.last, until)) for walk in some]
+        other.spans = spans_of(other.walks)
+        other.column_of = {walk.number: STATES * i for i, walk in enumerate(some)}
+        other.width = STATES * len(some)
+        return other
 
     @property
     def length(self) -> int:
@@ -149,6 +166,11 @@ class Layout:
         """A walk's states at all keyframes in an estimate, k × 6: a view, by which it may be changed."""
         keyframes = x[: self.length * self.width].reshape(self.length, self.width)
         return keyframes[:, STATES * index : STATES * (index + 1)]
+
+
+def spans_of(walks: Sequence[Walk]) -> Integers:
+    """First and last keyframe of each walk, walks × 2."""
+    return np.array([(walk.first, walk.last) for walk in walks], dtype=np.int64).reshape(-1, 2)
 
 
 def technology_key(state: FusionState, variable: Variable) -> Key:

@@ -19,6 +19,7 @@ from estimator.smoothing.flips import LIVE, RECENT_S, Effort, Flip, exposed, fli
 from estimator.smoothing.imaged import Loose, imaged, now_of
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.otherwise import Mode, same_now
+from estimator.smoothing.parts import Parts
 from estimator.smoothing.solutions import solutions
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
@@ -61,24 +62,36 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
     again = asked_again(problem)
     # Where nobody was known before, hardly anything tells yet.
     new = any(_is_new(problem.layout, i) for i in range(len(problem.layout.walks)))
-    everybody = set[int]()
+    tied = {walk.number: problem.coupled.groups.home(i)[0] for i, walk in enumerate(problem.layout.walks)}
+    group = [tied[walk.number] for walk in problem.layout.walks]
+    told, open_to, changed = list[Mode](), dict[int, bool](), set(group)
+    parts: Parts | None = None
     for _ in range(effort.rounds):
-        modes, alike, entered = list(before), new or bool(before), solved
         led = _loose(problem, solved)
         asked = asked_of(problem, solved, led, again, effort)
-        everybody.update(asked)
         most = max(effort.tried * WAYS // max(len(asked), WAYS), LEAST_TRIED)
-        for i in asked:
-            solved, others, open_ = _judged(problem, solved, i, led, effort._replace(tried=most))
+        # What was told of those who are tied to him was told beside somebody at a place where he is not.
+        some = [i for i in asked if group[i] in changed]
+        told, changed = [mode for mode in told if tied[mode.of] not in changed], set()
+        for i in some:
+            entered = solved
+            if parts is None or parts.x is not solved.x:
+                parts = Parts(problem, solved.x)
+            solved, others, open_ = _judged(parts, solved, i, led, effort._replace(tried=most))
+            if solved is not entered:
+                changed.add(group[i])
+                gone = solved.x - entered.x
+                told = [m._replace(x=m.x + gone) if tied[m.of] != group[i] else m for m in told]
             # Those who change sides together are found at the image of each of them.
-            modes += [m for m in others if not any(same_now(problem.layout, m.x, k.x) for k in modes)]
-            alike = alike or open_ or bool(others)
-        # What was told of the others was told beside somebody at a place where he is not. Where it was not
-        # asked of all who may face anything, it is asked again soon anyway.
-        if solved is entered or len(asked) < len(led) - len(again):
+            known = [*before, *told]
+            told += [m for m in others if not any(same_now(problem.layout, m.x, k.x) for k in known)]
+            open_to[i] = open_ or bool(others)
+        # Where it was not asked of all who may face anything, it is asked again soon anyway.
+        if not changed or len(asked) < len(led) - len(again):
             break
     problem.rows.widen(solved.x, solved.linear.jacobian)
-    return Judged(problem, solved, modes, alike, frozenset(everybody))
+    open_now = new or bool(before) or any(open_to.values())
+    return Judged(problem, solved, [*before, *told], open_now, frozenset(open_to))
 
 
 def _is_new(layout: Layout, index: int) -> bool:
@@ -100,10 +113,10 @@ def _loose(problem: Problem, solved: Solved) -> Loose:
 
 
 def _judged(
-    problem: Problem, solved: Solved, index: int, loose: Loose, effort: Effort
+    parts: Parts, solved: Solved, index: int, loose: Loose, effort: Effort
 ) -> tuple[Solved, list[Mode], bool]:
     """The likeliest solution among the images of one walk, the others, and whether he is exposed."""
-    layout = problem.layout
+    problem, layout = parts.problem, parts.problem.layout
     walk, now = layout.walks[index], float(layout.grid[-1])
     problem.rows.widen(solved.x, solved.linear.jacobian)
     own, heard = loose[index], heard_by(problem, solved, walk)
@@ -114,9 +127,9 @@ def _judged(
         effort = effort._replace(tried=effort.tried * 3 // 2)
         found += turns(problem, heard, way_m, index)
     known = _again(layout, solved.x, index, own)
-    begun = _begun(problem, solved.x, index, loose, known, found)
+    begun = _begun(parts, index, loose, known, found)
     starts = (Begun(imaged(layout, solved.x, index, flip, loose), flip) for flip in begun)
-    best, *others = solutions(Asked(problem, index, effort.whole), solved, starts, effort.tried)
+    best, *others = solutions(Asked(problem, index, effort.whole), parts, solved, starts, effort.tried)
     modes = _modes(layout, best, others, index, loose)
     last = bool(own[walk.last - 1])
     return best.solved, modes, last and exposed(heard, now)
@@ -152,32 +165,29 @@ def _turned_by(layout: Layout, x: Array, index: int) -> float:
     return turned if abs(turned) > SAME_RAD else 0.0
 
 
-def _begun(
-    problem: Problem, x: Array, index: int, loose: Loose, again: list[Flip], new: list[Flip]
-) -> list[Flip]:
+def _begun(parts: Parts, index: int, loose: Loose, again: list[Flip], new: list[Flip]) -> list[Flip]:
     """Images to begin from: the cheapest of each that is known, then new ones that do not cost far too much.
 
     Args:
-        problem: of a window.
-        x: its estimate, flat.
+        parts: of a window, with all others where they are in its estimate.
         index: of the walk.
         loose: see `imaged.Loose`.
         again: images that were likely when the window was last solved.
         new: others.
     """
-    others, most = company(problem, index, loose), problem.at(x).cost + FAR
+    others = company(parts.problem, index, loose)
     best, found = [], list[Costed]()
     for flip in again:
-        ways = costed(problem, x, index, loose, flip, others)
+        ways = costed(parts, index, loose, flip, others)
         # As it was told; what else its unit may face then, if it was told before, is asked as of new ones.
         told = [one for one in ways if flip.image.turned_rad in (0.0, one.flip.image.turned_rad)]
         best.append(min(told, key=lambda one: one.cost).flip)
         found += [one for one in ways if one.flip.image != flip.image]
     for flip in new:
-        found += costed(problem, x, index, loose, flip, others)
+        found += costed(parts, index, loose, flip, others)
     found.sort(key=lambda one: one.cost)
     # A way of minutes that is turned as a whole is far off at its end, however well it fits once solved.
-    near = [one for one in found if one.cost < most or turns_whole(one.flip.image)]
+    near = [one for one in found if one.cost < FAR or turns_whole(one.flip.image)]
     return [*best, *(one.flip for one in near)]
 
 

@@ -1,5 +1,6 @@
 """Every reading of the window as rows of numbers, and their linearisation at any estimate."""
 
+from collections.abc import Sequence
 from copy import copy
 from typing import NamedTuple, Self
 
@@ -19,7 +20,9 @@ from estimator.smoothing.encounters import candidates
 from estimator.smoothing.ends import FREE, UNIT, Ends, nodes_of, place_ends
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.linear import Readings, add_unsure, apart, jacobians, residuals, stretch
+from estimator.smoothing.numbers import Numbers
 from estimator.smoothing.obstructed import excess
+from estimator.smoothing.partial import partial
 from estimator.smoothing.rarer import once_a_second
 
 BIAS = 4
@@ -78,6 +81,7 @@ class Rows:
         self._told: Array = self.nominal
         self._usual_noise: Array = self.noise
         self._white, self._common = self.nominal**2, np.zeros(len(self.nominal))
+        self._unsure_m2 = self._a.unsure_m2, self._b.unsure_m2, self._on.unsure_m2, self._by.unsure_m2
         size = layout.length * layout.width
         self._bearings = np.flatnonzero(self.pairs[:, 1] >= BEARING)
         self._readings = Readings(
@@ -135,6 +139,45 @@ class Rows:
         crumb.take(chosen)
         self.drops: Array = drops[chosen]
         self._by, self._crumb = by, crumb
+
+    def of(self, numbers: Sequence[int]) -> NDArray[np.bool_]:
+        """Which of them tell of some walks, or of what these have dropped, m.
+
+        Args:
+            numbers: the nodes' in the ledger.
+        """
+        table = self._layout.state.ledger.table("drops")
+        named = np.zeros(len(self._layout.state.owners) + 1, dtype=np.bool_)
+        named[list(numbers)] = True
+        named[table[named[table[:, 2].astype(np.intp)], 1].astype(np.intp)] = True
+        pairs, drops = self.pairs[:, 2:4].astype(np.intp), self.drops[:, 1:3].astype(np.intp)
+        singles = named[self.singles[:, 1].astype(np.intp)]
+        return np.concatenate([named[pairs].any(axis=1), singles, np.repeat(named[drops].any(axis=1), 3)])
+
+    def part(self, numbers: Numbers, x: Array, chosen: NDArray[np.bool_]) -> Self:
+        """Some of them, as readings of a part of the window; nothing is to be learned of their noise.
+
+        Args:
+            numbers: of the part.
+            x: the window's estimate, flat: what moves and is not in the part is held where it is.
+            chosen: which rows, m; all three of a drop, or none.
+        """
+        m, n = len(self.pairs), len(self.singles)
+        pairs, singles, drops = chosen[:m], chosen[m : m + n], chosen[m + n :: 3]
+        unsure = zip(self._unsure_m2, (pairs, pairs, singles, drops), strict=True)
+        other, columns = copy(self), self.columns[chosen]
+        for name in ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike", "turns", "_told"):
+            setattr(other, name, getattr(self, name)[chosen])
+        other.columns = np.where(columns >= 0, numbers.column[columns], -1)
+        other.pairs, other.singles, other.drops = self.pairs[pairs], self.singles[singles], self.drops[drops]
+        vars(other).update(
+            _inside=self._inside[pairs],
+            _strongest=self._strongest[pairs],
+            _unsure_m2=tuple(each[some] for each, some in unsure),
+            _readings=partial(self._readings, numbers, x, pairs, singles, drops),
+            _bearings=np.flatnonzero(other.pairs[:, 1] >= BEARING),
+        )
+        return other
 
     def learn(self, noise: dict[str, LearnedNoise]) -> None:
         """Give each reading the noise that has been learned of its technology and its link."""
@@ -202,28 +245,28 @@ class Rows:
         """
         self.sigma = self._told.copy()
         stretch(self._readings, x, self._inside, self._strongest, self.sigma)
-        a, b, on, by = (ends.unsure_m2 for ends in (self._a, self._b, self._on, self._by))
-        add_unsure(jacobian, a, b, on, by, self.sigma)
+        add_unsure(jacobian, *self._unsure_m2, self.sigma)
 
     def places(self, x: Array) -> tuple[Array, Array]:
         """Where both ends of each pair are at an estimate, m × 3 each (m)."""
-        return place_ends(self._a.table, x).place, place_ends(self._b.table, x).place
+        return place_ends(self._readings.a, x).place, place_ends(self._readings.b, x).place
 
     @property
     def standing(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         """Whether each end of each pair stands, m each."""
-        a, b = self._a.table.kind, self._b.table.kind
+        a, b = self._readings.a.kind, self._readings.b.kind
         return np.asarray((a != FREE) & (a != UNIT)), np.asarray((b != FREE) & (b != UNIT))
 
     @property
     def held(self) -> NDArray[np.bool_]:
         """Whether both ends of each pair have a PDR unit, or stand: no velocity takes them anywhere, m."""
-        return np.asarray((self._a.table.kind != FREE) & (self._b.table.kind != FREE))
+        return np.asarray((self._readings.a.kind != FREE) & (self._readings.b.kind != FREE))
 
     def by_units(self, source: int) -> bool:
         """Whether nodes with a PDR unit take part in the readings of a technology."""
         mine = self.pairs[:, 6] == source
-        return bool(((self._a.unit | self._b.unit) & mine).any())
+        a, b = self._readings.a.kind, self._readings.b.kind
+        return bool((((a == UNIT) | (b == UNIT)) & mine).any())
 
     def linearise(self, x: Array) -> Linearised:
         """Residuals and derivatives at an estimate x, flat."""

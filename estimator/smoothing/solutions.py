@@ -1,17 +1,18 @@
 """The solutions of a window that images of somebody's way lead to.
 
-Most images lead back to where he was: first the window is solved with all others held where they are, which
-costs little, and as a whole only where that has led elsewhere.
+Most images lead back to where he was: first those who would go there are solved by themselves, with all the
+others held where they are, which costs little, and the window as a whole only where that has led elsewhere.
 """
 
+import math
 from collections.abc import Iterable, Sequence
 
 from estimator.fusion.images import Image
 from estimator.smoothing.earlier import CLEARER, ITERATIONS
 from estimator.smoothing.flips import Flip
+from estimator.smoothing.parts import Parts
 from estimator.smoothing.solved import Solved
-from estimator.smoothing.tried import Asked, Begun, Tried
-from estimator.smoothing.walks import Motion
+from estimator.smoothing.tried import Asked, Begun, Led, Tried
 
 SOON = 4
 """Iterations after which an image is given up that is hopeless."""
@@ -21,11 +22,12 @@ SLACKS_M = (1.0, 0.3, 0.1)
 """How far off an estimate may be at first whose way nobody has gone: with a unit turned, or others along."""
 
 
-def solutions(asked: Asked, solved: Solved, begun: Iterable[Begun], most: int) -> list[Tried]:
+def solutions(asked: Asked, parts: Parts, solved: Solved, begun: Iterable[Begun], most: int) -> list[Tried]:
     """The solutions that images of a way lead to, that which is to be shown first.
 
     Args:
         asked: of whom.
+        parts: of the window, with all others where they are in the solution.
         solved: the solution of which they are images.
         begun: where each of them begins, with all others where they are in the solution.
         most: so many of them are solved as a whole.
@@ -35,17 +37,18 @@ def solutions(asked: Asked, solved: Solved, begun: Iterable[Begun], most: int) -
         if any(asked.same_start(start, other) for other in tried):
             continue
         tried.append(start)
-        led = _led(asked, solved.motions, found, start)
+        led = _led(asked, parts, found, start)
         if led is None:
             continue
         if most == 0:
             break
         most -= 1
-        there = _solved(asked, found, led)
+        alone = len(start.flip.along) + 1 == len(asked.layout.walks)
+        there = _solved(asked, found, led, alone)
         if there is None:
             continue
         new = Tried(there, start.flip)
-        same = asked.among(found, new)
+        same = asked.among([one.led for one in found], new.led)
         if same is None:
             found.append(new)
         elif there.cost < found[same].solved.cost - CLEARER:
@@ -56,28 +59,47 @@ def solutions(asked: Asked, solved: Solved, begun: Iterable[Begun], most: int) -
     return [best, *(one for one in found if one is not best)]
 
 
-def _led(asked: Asked, motions: Sequence[Motion], found: Sequence[Tried], start: Begun) -> Begun | None:
-    """Where an image leads to with all others held where they are; None: to no solution that is not known."""
-    problem, moving = asked.problem, {asked.of, *(i for i, _ in start.flip.along)}
-    if len(moving) == len(problem.layout.walks):
-        return start
-    slacks = _slacks(start.flip)
-    try:
-        led = problem.beside(moving, motions).solve(start.x, slacks, len(slacks) + SOON)
-    except ValueError:
-        # It hangs in the air there.
-        return None
-    if led.cost > found[0].solved.cost + HELD:
-        return None
-    same = asked.among(found, Tried(led, start.flip))
-    if same is not None and led.cost > found[same].solved.cost - CLEARER:
-        return None
-    return start._replace(x=led.x)
+def _led(asked: Asked, parts: Parts, found: Sequence[Tried], start: Begun) -> Begun | None:
+    """Where an image leads to with all others held where they are; None: to no solution that is not known.
+
+    Two headings part soon, or they are one: first the beginning of a way is asked alone.
+    """
+    layout, moving = asked.layout, {asked.of, *(i for i, _ in start.flip.along)}
+    slacks, last = _slacks(start.flip), layout.length - 1
+    led = Led(start, math.inf)
+    for until in parts.stages(start.flip):
+        if until == last and len(moving) == len(layout.walks):
+            break
+        part = parts.of(moving, until)
+        try:
+            x = part.led(led.to.x, slacks, len(slacks) + SOON)
+        except ValueError:
+            # It hangs in the air there.
+            return None
+        led = Led(start._replace(x=x), part.more(x))
+        if led.cost > HELD:
+            return None
+        known = [Led(one.begun, part.more(one.solved.x)) for one in found]
+        same = asked._replace(part=part).among(known, led)
+        if same is None:
+            continue
+        # A beginning that is the same goes on the same way: what it gains by itself is no gain.
+        clearer = until == last and led.cost < known[same].cost - CLEARER
+        if not clearer and (until == last or asked.returned(known[same].to, start, led.to)):
+            return None
+    return led.to
 
 
-def _solved(asked: Asked, found: Sequence[Tried], start: Begun) -> Solved | None:
-    """The solution from an image; None where there is none, or it is hopeless."""
-    problem, slacks = asked.problem, _slacks(start.flip)
+def _solved(asked: Asked, found: Sequence[Tried], start: Begun, alone: bool) -> Solved | None:
+    """The solution from an image; None where there is none, or it is hopeless.
+
+    Args:
+        asked: of whom.
+        found: the solutions that are known.
+        start: where to begin.
+        alone: nobody is held: it has led nowhere yet.
+    """
+    problem, slacks = asked.problem, _slacks(start.flip) if alone else ()
     try:
         there = problem.solve(start.x, slacks, len(slacks) + SOON)
         if there.cost > found[0].solved.cost + HOPELESS:

@@ -1,35 +1,34 @@
 """Newton steps over a window: readings, motion and priors at once, robust, until it rests."""
 
-from collections.abc import Collection, Mapping, Sequence
 from copy import copy
 from functools import cached_property
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
-from estimator.fusion import physics
-from estimator.fusion.ledger import RSSI
 from estimator.fusion.prior import Prior
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
-from estimator.graph.robust import Weighted, prior_cost, total_cost, weigh
+from estimator.graph.robust import Weighted, prior_cost, total_cost
 from estimator.graph.scatter import add_motion
+from estimator.smoothing.aside import Aside
 from estimator.smoothing.bent import add_bends
 from estimator.smoothing.carried import Carried
 from estimator.smoothing.chain import Chain
 from estimator.smoothing.coupled import Coupled
 from estimator.smoothing.going import Going
 from estimator.smoothing.layout import Layout
+from estimator.smoothing.numbers import Numbers
 from estimator.smoothing.priors import own_priors
 from estimator.smoothing.rows import Linearised, Rows
 from estimator.smoothing.solved import Solved, There
 from estimator.smoothing.walks import STATES, Motion, misfit
+from estimator.smoothing.weighing import weighed
 
 ACCEPTED = 1e-3
 """Rise of the negative log likelihood that counts as rounding."""
 RESTING = 0.001
-SLACK_DB_PER_M = 4.0
-"""What a metre makes of a signal's power a few metres away."""
 NEAR = 1.0
 """A step that gains less in log likelihood was near enough for negative curvature to mean something."""
 LEAST_SHARE, FARTHEST = 0.1, 4.0
@@ -50,7 +49,7 @@ class Problem:
         prior: what is known from before; None: nothing is.
         going: how its walks go.
         left_out: rows that do not count.
-        held: walks that are held where they are, by index, and their motion there.
+        aside: what readings say of the border that are not looked at; None: all of them are.
     """
 
     def __init__(self, layout: Layout, rows: Rows, prior: Prior | None) -> None:
@@ -60,7 +59,7 @@ class Problem:
         self.going = Going(layout)
         self._carried = None if prior is None else Carried(layout, prior)
         self.left_out: Integers = np.zeros(0, dtype=np.int64)
-        self.held: Mapping[int, Motion] = {}
+        self.aside: Aside | None = None
 
     def without(self, left_out: Integers) -> Self:
         """The same problem without some of its rows; the rows themselves are shared."""
@@ -68,26 +67,35 @@ class Problem:
         other.left_out = left_out
         return other
 
-    def beside(self, moving: Collection[int], motions: Sequence[Motion]) -> Self:
-        """The same problem with all walks but some held where they are: it has their ways and their cost.
+    def part(self, numbers: Numbers, x: Array, chosen: NDArray[np.bool_], left: Aside) -> Self:
+        """Some walks by themselves up to some keyframe, with all others held where they are.
 
         Args:
-            moving: indices of those that are not held.
-            motions: each walk's motion there.
+            numbers: of the part.
+            x: the estimate, flat, in which the others are held.
+            chosen: rows that it has; no others depend on what moves in it.
+            left: what others say of the border.
         """
-        other = copy(self)
-        other.held = {i: motion for i, motion in enumerate(motions) if i not in moving}
+        other, at = copy(self), numbers.place[self._at]
         vars(other).pop("coupled", None)
+        other.layout, other.going = numbers.layout, self.going.part(numbers)
+        other.rows, other.aside = self.rows.part(numbers, x, chosen), left
+        vars(other).update(
+            _at=at[at >= 0],
+            _mean=self._mean[at >= 0],
+            _information=self._information[at >= 0],
+            _carried=None if self._carried is None else self._carried.part(numbers, x),
+        )
         return other
 
     @cached_property
     def coupled(self) -> Coupled:
         """How its unknowns hang together."""
-        return Coupled(self.layout, self.rows, self._at, self._carried, self.held)
+        return Coupled(self.layout, self.rows, self._at, self._carried)
 
     def motions(self, x: Array) -> list[Motion]:
         """Each walk's motion at an estimate."""
-        return self.going.motions(x, self.held)
+        return self.going.motions(x)
 
     def cost(self, x: Array, residual: Array, motions: list[Motion]) -> float:
         """Negative log likelihood up to a constant: mixtures of the readings, motion, priors."""
@@ -96,7 +104,11 @@ class Problem:
         total += prior_cost(x, self._at, self._mean, self._information)
         for motion in motions:
             total += misfit(motion)
-        return total if self._carried is None else total + self._carried.cost(x)
+        if self._carried is not None:
+            total += self._carried.cost(x)
+        if self.aside is not None:
+            total += self.aside.cost(x[self.layout.length * self.layout.width :])
+        return total
 
     def linearise(self, x: Array) -> Linearised:
         """The rows at an estimate, with first-estimate Jacobians (estimation.md, point 6).
@@ -119,23 +131,8 @@ class Problem:
         return self.rows.jacobian(self.first(x))
 
     def weigh(self, residual: Array, slack_m: float = 0.0, doubt: Array | None = None) -> Weighted:
-        """E-step of the readings' noise, as large as the estimate may be off.
-
-        Else readings a metre off pull with all their weight (graduated non-convexity, Blake, Zisserman).
-
-        Args:
-            residual: z − h(x) − shift, m.
-            slack_m: how far off places may be (m).
-            doubt: variance of each h(x) by what is not solved yet, m; None: all is.
-        """
-        rows, sigma = self.rows, self.rows.sigma
-        unsure = np.zeros(len(residual)) if doubt is None else doubt
-        if slack_m > 0.0:
-            slack = np.where(rows.turns, 0.0, slack_m)
-            slack[: len(rows.pairs)][rows.pairs[:, 1] == RSSI] *= SLACK_DB_PER_M
-            sigma = np.hypot(sigma, slack)
-            unsure = np.where(rows.turns, physics.BIAS_SIGMA_MOST_RADPS**2, unsure)
-        weighted = weigh(residual, sigma, unsure, *rows.noise.T)
+        """E-step of the readings' noise, as large as the estimate may be off; see `weighing.weighed`."""
+        weighted = weighed(self.rows, residual, slack_m, doubt)
         weighted.information[self.left_out] = 0.0
         return weighted
 
@@ -160,8 +157,6 @@ class Problem:
         length = layout.length if until is None else until + 1
         chain = Chain(length, layout.width, self.coupled.groups.each)
         for i, (walk, motion) in enumerate(zip(layout.walks, motions, strict=True)):
-            if i in self.held:
-                continue
             group, block = self.coupled.groups.home(i)
             strand = chain.strands[group]
             own = slice(STATES * block, STATES * (block + 1))
@@ -181,6 +176,8 @@ class Problem:
             )
         if self._carried is not None:
             self._carried.add(chain, self.coupled.shared, x)
+        if self.aside is not None:
+            self.aside.add(chain, x[layout.length * layout.width :])
         placed, information = self.coupled.rows, weighted.information
         known, certain = self.coupled.priors, self._information
         if until is not None:

@@ -11,6 +11,7 @@ from estimator.measurements.bearing import within_pi
 from estimator.smoothing.flips import Flip
 from estimator.smoothing.layout import Layout
 from estimator.smoothing.otherwise import same_place
+from estimator.smoothing.parts import Part
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
 from estimator.smoothing.turns import facing, reports_from, turn
@@ -19,6 +20,8 @@ SAME_RAD = 0.4
 """Headings nearer to each other than this may be one that is not at rest yet."""
 PARTED = 0.1
 """What the way between two headings costs more than either, in log likelihood, if they are two."""
+RETURNED = 0.2
+"""Share of how far from a heading an image began, within which it has led back to it."""
 BEGINNINGS = 3
 """Images of a way that put somebody at the same place now, from keyframes this near, are the same."""
 
@@ -28,6 +31,13 @@ class Begun(NamedTuple):
 
     x: Array
     flip: Flip
+
+
+class Led(NamedTuple):
+    """Where an image of a way has led to, and what it costs there, in log likelihood up to a constant."""
+
+    to: Begun
+    cost: float
 
 
 class Tried(NamedTuple):
@@ -41,6 +51,11 @@ class Tried(NamedTuple):
         """Where it has led to."""
         return Begun(self.solved.x, self.flip)
 
+    @property
+    def led(self) -> Led:
+        """Where it has led to, and what it costs there."""
+        return Led(self.begun, self.solved.cost)
+
 
 class Asked(NamedTuple):
     """Of whom it is asked where he is.
@@ -49,11 +64,13 @@ class Asked(NamedTuple):
         problem: of the window.
         of: index of his walk.
         whole: where he was at any time, not only where he is now.
+        part: by whose readings, and up to when; None: by all of the window.
     """
 
     problem: Problem
     of: int
     whole: bool
+    part: Part | None = None
 
     @property
     def layout(self) -> Layout:
@@ -67,9 +84,9 @@ class Asked(NamedTuple):
             return False
         return near and self._same_places(one, other, self.of)
 
-    def same(self, first: Tried, second: Tried) -> bool:
+    def same(self, first: Led, second: Led) -> bool:
         """Whether two solutions are the same: one of a heading may not be at rest yet far from its start."""
-        one, other = first.begun, second.begun
+        one, other = first.to, second.to
         if not (self._turned(one) and self._turned(other)):
             return self._same_places(one, other, self.of)
         begins = reports_from(self.layout, self.of)
@@ -79,12 +96,18 @@ class Asked(NamedTuple):
         apart_rad = self._apart_rad(one, other)
         if abs(apart_rad) > SAME_RAD:
             return False
-        most = max(first.solved.cost, second.solved.cost) + PARTED
-        return self.problem.at(self._between(one, other, apart_rad)).cost < most
+        return self._cost(self._between(one, other, apart_rad)) < max(first.cost, second.cost) + PARTED
 
-    def among(self, found: Sequence[Tried], new: Tried) -> int | None:
+    def among(self, found: Sequence[Led], new: Led) -> int | None:
         """Which of some solutions another one is; None: none of them."""
         return next((k for k, one in enumerate(found) if self.same(one, new)), None)
+
+    def _cost(self, x: Array) -> float:
+        return self.problem.at(x).cost if self.part is None else self.part.more(x)
+
+    def returned(self, known: Begun, start: Begun, led: Begun) -> bool:
+        """Whether an image has led back to a known heading, and not only begun near to it."""
+        return abs(self._apart_rad(known, led)) < RETURNED * abs(self._apart_rad(known, start))
 
     def _apart_rad(self, one: Begun, other: Begun) -> float:
         """By how much the other's heading is to the left of the one's (rad)."""
@@ -121,7 +144,10 @@ class Asked(NamedTuple):
     def _places(self, x: Array, index: int) -> Array:
         """Where a walk is at epochs that are asked for, k × 2 (m)."""
         walk = self.layout.walks[index]
-        return self.layout.states(x, index)[walk.first if self.whole else walk.last : walk.last + 1, :2]
+        last = walk.last if self.part is None else min(walk.last, self.part.numbers.until)
+        # Who is at the same place before the window ends may still have come another way.
+        first = walk.first if self.whole or last < walk.last else last
+        return self.layout.states(x, index)[first : last + 1, :2]
 
 
 def heading(layout: Layout, index: int, x: Array) -> float:

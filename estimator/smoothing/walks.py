@@ -207,6 +207,10 @@ class Free(NamedTuple):
     noise: Array
     information: Array
 
+    def first(self, steps: int) -> "Free":
+        """So many steps of it, the first ones."""
+        return Free(self.transition[:steps], self.noise[:steps], self.information[:steps])
+
     def motion(self, states: Array) -> Motion:
         """The motion with states of k + 1 keyframes."""
         residual = states[1:] - np.einsum("kij,kj->ki", self.transition, states[:-1])

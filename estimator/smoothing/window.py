@@ -58,8 +58,8 @@ EXPOSED = 0.5
 """The same where somebody may have gone to an image of where he seems to be."""
 GONE = 8.0
 """A window this many times as long as it may be is begun anew."""
-MORE = 0.2
-"""Share of what is known that is new where headings are asked about rarely."""
+TOLD_S, MORE = 8.0, 0.5
+"""What is new where headings are asked about rarely: so much at least, and this share of what is known."""
 ITERATIONS = 4
 RESTING = 0.1
 """A window that gains less in log likelihood is solved again soon anyway."""
@@ -77,14 +77,16 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
         if not len(state.ledger.table("begins")) and not len(state.ledger.table("stands")):
             return
         state.begun_t = state.refreshed_t = t
+    often = rarer == 1.0
     # Whose heading is one of two is looked at as often as who may be at an image.
-    turned = any(node.turned and not node.otherwise for node in state.nodes.values())
+    turned = any(node.turned and not (node.otherwise and often) for node in state.nodes.values())
     # Where the window is solved rarely, only when there is more to tell.
-    turned = turned and (rarer == 1.0 or t - state.refreshed_t >= MORE * (t - state.begun_t))
+    told_s = t - state.refreshed_t
+    turned = turned and (often or told_s >= max(TOLD_S, MORE * (t - state.begun_t)))
     if not (state.due or turned or state.bent_m > JOLT_M * rarer):
         if state.suspected:
             periods = SUSPENSE
-        elif state.exposed and rarer == 1.0:
+        elif state.exposed and often:
             # Where the window is solved rarely nobody looks: his images are asked about at the end.
             periods = EXPOSED
         else:
@@ -100,6 +102,12 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
         refresh(state, t)
         # What was bent is rarely straight after one solution.
         state.suspected = True
+
+
+def look_again(state: FusionState) -> None:
+    """After the last tick: where a unit may still face anything, ask it of all that has been heard."""
+    if any(node.turned for node in state.nodes.values()) and state.begun_t is not None:
+        refresh(state, state.refreshed_t)
 
 
 def refresh(state: FusionState, solved_t: float) -> bool:

@@ -39,7 +39,7 @@ from estimator.smoothing.solve import RESTING, Problem
 from estimator.smoothing.solved import Solved
 from estimator.smoothing.swung import swing
 from estimator.smoothing.tracks import tracks
-from estimator.smoothing.window import keep_up
+from estimator.smoothing.window import keep_up, look_again
 from estimator.trackers.base import TrackerSettings
 
 SLACKS_M = (3.0, 1.0, 0.3, 0.1)
@@ -232,6 +232,7 @@ def online_pass(readings: Sequence[AnyFolded], settings: TrackerSettings) -> Fus
         keep_up(state, until_t, RARER)
         start = end
     flush(state)
+    look_again(state)
     keep_poses(state)
     return state
 

@@ -23,6 +23,10 @@ ANTENNA_M = 0.3
 RSSI_SIGMA_DB = 5.0
 CRUMB_SIGMA_M = 0.5
 START_SIGMA_M = 0.3
+UNTOLD_RAD = 3.0
+"""Standard deviation of what a unit faces of which nobody has told."""
+FACES_RAD = 2.4
+"""By so much more than the one before each unit's frame is turned then: all round, and no two alike."""
 
 
 class Laps(NamedTuple):
@@ -34,6 +38,7 @@ class Laps(NamedTuple):
         heard: each responder hears so many, the nearest.
         sweeps: so many times a second.
         seed: of the noise.
+        told: it is told what their units face; else each of these is turned by an angle of its own.
     """
 
     responders: int
@@ -41,6 +46,7 @@ class Laps(NamedTuple):
     heard: int = 6
     sweeps: int = 1
     seed: int = 0
+    told: bool = True
 
     def introductions(self) -> list[AnyReading]:
         """The readings at epoch 0 that place everybody: the base, the breadcrumbs, the responders."""
@@ -53,10 +59,15 @@ class Laps(NamedTuple):
                 Node(t=0.0, node=f"b{i}", role="breadcrumb", position_m=place, sigma_m=CRUMB_SIGMA_M)
             )
         for i, (east, north) in enumerate(self.places(np.zeros(1))[0].tolist()):
-            place = (east, north, 0.0)
-            found.append(
-                Node(t=0.0, node=f"ff{i}", role="responder", position_m=place, sigma_m=START_SIGMA_M)
+            entered = Node(
+                t=0.0,
+                node=f"ff{i}",
+                role="responder",
+                position_m=(east, north, 0.0),
+                sigma_m=START_SIGMA_M,
+                heading_sigma_rad=None if self.told else UNTOLD_RAD,
             )
+            found.append(entered)
         return found
 
     def second(self, until_t: int) -> list[AnyReading]:
@@ -75,9 +86,10 @@ class Laps(NamedTuple):
                 readings += [Rssi(t=t, a=f"ff{i}", b=f"b{crumb}", dbm=power) for crumb, power in heard]
         before, after = self.places(np.array([until_t - 1.0, float(until_t)]))
         moved = after - before + rng.normal(0.0, STEP_SIGMA_M, before.shape)
-        turn = BIAS_RADPS * until_t  # the gyro's bias turns the unit's frame
-        frame = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
-        for i, (east, north) in enumerate((moved @ frame.T).tolist()):
+        turn = BIAS_RADPS * until_t - self._faces()  # the gyro's bias turns the unit's frame
+        cosine, sine = np.cos(turn), np.sin(turn)
+        reported = [cosine * moved[:, 0] + sine * moved[:, 1], cosine * moved[:, 1] - sine * moved[:, 0]]
+        for i, (east, north) in enumerate(np.stack(reported, axis=1).tolist()):
             readings.append(Displacement(t=float(until_t), node=f"ff{i}", delta_m=(east, north, 0.0)))
         return readings
 
@@ -105,6 +117,10 @@ class Laps(NamedTuple):
             f"ff{i}": TrueTrack(t_s, np.hstack([places[:, i], flat]), ground, np.zeros(len(t_s)))
             for i in range(self.responders)
         }
+
+    def _faces(self) -> FloatArray:
+        """Where their units' frames are turned to at first (rad)."""
+        return np.zeros(self.responders) if self.told else FACES_RAD * np.arange(1.0, self.responders + 1.0)
 
     def _side(self) -> int:
         return math.ceil(math.sqrt(self.breadcrumbs))

@@ -18,6 +18,7 @@ from estimator.smoothing.flips import Flip, loose_steps
 from estimator.smoothing.imaged import imaged
 from estimator.smoothing.likeliest import likeliest
 from estimator.smoothing.otherwise import Mode, otherwise
+from estimator.smoothing.parts import Parts
 from estimator.smoothing.turns import faced, facing, turns_whole
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.kirchhoff import KirchhoffTracker
@@ -222,7 +223,7 @@ def test_two_at_the_image_of_both_hear_each_other_as_they_do() -> None:
     loose = {i: loose_steps(problem, solved, i) for i in range(2)}
     assert company(problem, 0, loose) == [1]
     since = int(np.searchsorted(layout.grid, 40.0))
-    alone, together = costed(problem, x, 0, loose, Flip(since, LINE), [1])
+    alone, together = costed(Parts(problem, x), 0, loose, Flip(since, LINE), [1])
     assert [i for i, _ in together.flip.along] == [1]
     assert together.cost < alone.cost - 100.0
     there = imaged(layout, x, 0, together.flip, loose)

@@ -155,20 +155,6 @@ def test_groups_are_what_direct_readings_couple() -> None:
     assert [part.tolist() for part in placed.parts] == [[0, 1], [2], [3]]
 
 
-def test_walks_that_are_held_are_in_no_group() -> None:
-    rows = np.full((2, 12), -1)
-    rows[0, [0, 6]] = 2, 14
-    rows[1, [0, 6]] = 13, 19
-    groups = Groups(18, 3, [rows], held=[0])
-    assert [(g.walks.tolist(), g.lasting.tolist()) for g in groups.each] == [
-        ([1], []),
-        ([2], [1]),
-        ([], [0, 1, 2]),
-    ]
-    placed = groups.placed(np.zeros(2, dtype=np.int64), rows)
-    assert placed.columns[:, [0, 6]].tolist() == [[-1, 2], [1, 6]]
-
-
 def prior_at(problem: Problem, solved: Solved, cut: int) -> Prior:
     """What the keyframes before one say of it and of the border."""
     layout = problem.layout

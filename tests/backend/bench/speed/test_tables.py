@@ -1,3 +1,4 @@
+import math
 from pathlib import Path
 
 import pytest
@@ -6,9 +7,10 @@ from backend.bench.accuracy import cases
 from backend.bench.speed import growth, real_time, same_graph, size, smoothed
 from backend.bench.speed.contestants import Isam, Ours
 from backend.bench.speed.growth import Span
-from backend.bench.speed.laps import Laps
+from backend.bench.speed.laps import UNTOLD_RAD, Laps
 from backend.bench.speed.race import race
 from backend.bench.speed.run import run
+from estimator.measurements import Displacement, Node
 from tests.backend.bench.accuracy.short import NAME, build, true_track
 
 
@@ -55,8 +57,24 @@ def test_the_smoothed_view_is_timed_by_the_clock(capsys: pytest.CaptureFixture[s
     assert taken.readings == 1 + 9 + 1 + 20 * 7
     assert len(taken.seconds) == smoothed.TIMES
     assert taken.rmse_m < 3.0
-    smoothed.run(Laps(1, 9), duration_s=5)
-    assert "bar: within 5 s: met" in capsys.readouterr().out
+    smoothed.run([Laps(1, 9), Laps(1, 9, told=False)], duration_s=5)
+    told = capsys.readouterr().out
+    assert told.count("bar: within 5 s: met") == 2
+    assert "headings told" in told
+    assert "headings untold" in told
+
+
+def test_a_unit_that_nobody_has_told_what_it_faces_reports_the_same_steps_turned() -> None:
+    steps = {}
+    for told in (True, False):
+        laps = Laps(2, 9, told=told)
+        assert {r.heading_sigma_rad for r in laps.introductions() if isinstance(r, Node)} >= {
+            None if told else UNTOLD_RAD
+        }
+        steps[told] = [r.delta_m for r in laps.second(7) if isinstance(r, Displacement)]
+    for one, other in zip(steps[True], steps[False], strict=True):
+        assert math.hypot(*one) == pytest.approx(math.hypot(*other))
+        assert math.dist(one, other) > 0.1
 
 
 def test_growth_measures_the_stretches_asked_for() -> None:
