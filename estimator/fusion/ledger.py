@@ -28,6 +28,8 @@ block."""
 RANGE, RSSI, BEARING, BODY_BEARING = range(4)
 """Kinds of pairs; the last two are bearings in the local frame and in the body frame of `a`."""
 ECHO = COLUMNS["pairs"].index("echo")
+GYRO_BIAS = 4
+"""Axis of a single that tells a gyro bias."""
 
 MERGED = 64
 """Chunks of a table, the newest of which are joined to one when there are more."""

@@ -9,6 +9,7 @@ from numba import njit
 
 from estimator.fusion import physics
 from estimator.fusion.introduce import attach_unit, begin_at_base, waits_for_ranges
+from estimator.fusion.ledger import GYRO_BIAS
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.physics import NOISES
 from estimator.fusion.rows import Single
@@ -109,7 +110,7 @@ def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[S
     if increment.turn is not None:
         told, noise = increment.turn, physics.TURN_NOISE
         state.ledger.add(
-            "singles", told.t, node.index, 4.0, told.value, told.sigma, float(NOISES.index(noise))
+            "singles", told.t, node.index, GYRO_BIAS, told.value, told.sigma, float(NOISES.index(noise))
         )
         # The tick moves on first, then takes in what was told before.
         sigma = math.sqrt(told.sigma**2 + told.since)

@@ -3,11 +3,10 @@
 Physics leaves most of them a span. Some were chosen among what is plausible with recordings in view: the
 public sets plaza1, danis and hanyang, and the scenarios of `estimator.simulate`. Accuracy on these is
 therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M`, `SCALE_SIGMA`,
-`SET_OFF_BIAS_RADPS` (with plaza1 and plaza2 in view),
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
 `FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE`, `WALL_M`, `EXCESS_M` and the two after
-it, and that the spread of gyro biases is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm. M
-marks what estimation.md reports as measured.
+it, `SET_OFF_BIAS_RADPS` (with plaza2 in view as well), and that the spread of gyro biases is uniform up to
+`BIAS_SIGMA_MOST_RADPS`, not in its logarithm. M marks what estimation.md reports as measured.
 
 Some stand in compiled functions, which keep the number that they were compiled with: after a change remove
 `__pycache__` (decision 0007).

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.fusion import echoes, physics
-from estimator.fusion.ledger import BEARING, ECHO, RANGE, RSSI
+from estimator.fusion.ledger import BEARING, ECHO, GYRO_BIAS, RANGE, RSSI
 from estimator.fusion.noise import LearnedNoise
 from estimator.fusion.pairs import UNTOLD_POWER
 from estimator.graph.dense import Array
@@ -24,9 +24,6 @@ from estimator.smoothing.numbers import Numbers
 from estimator.smoothing.obstructed import excess
 from estimator.smoothing.partial import partial
 from estimator.smoothing.rarer import once_a_second
-
-BIAS = 4
-"""Axis of a single that tells a gyro bias."""
 
 
 class Linearised(NamedTuple):
@@ -75,7 +72,7 @@ class Rows:
         self._strongest[rssi] = candidates(heard[:, 0], heard[:, 9], heard[:, 4])
         own = slice(len(self.pairs), len(self.pairs) + len(self.singles))
         self.turns: NDArray[np.bool_] = np.zeros(len(self.nominal), dtype=bool)
-        self.turns[own] = self.singles[:, 2] == BIAS
+        self.turns[own] = self.singles[:, 2] == GYRO_BIAS
         self.shift: Array = np.zeros(len(self.nominal))
         self.sigma: Array = self.nominal.copy()
         self._told: Array = self.nominal
