@@ -22,7 +22,8 @@ class Readiness(BaseModel):
 
     Attributes:
         log: the database answers.
-        worker: an estimator worker is connected. Without one telemetry is still taken, and dots go stale.
+        worker: an estimator worker is connected and ready to compute; it takes seconds to begin. Without one
+            telemetry is still taken, and dots go stale.
     """
 
     log: bool

@@ -53,6 +53,12 @@ class Server:
         self.port = int(line.rsplit(":", 1)[1])
         return self
 
+    def until_it_computes(self) -> Self:
+        """Wait until an estimator worker is at work: what is posted from then on is shown at once."""
+        with httpx2.Client(base_url=self.url) as http:
+            eventually(lambda: http.get("/readyz").json()["worker"], within_s=READY_WITHIN_S)
+        return self
+
     def _first_line(self) -> str:
         """The first line on standard output, or what kept it from coming."""
         assert self.process is not None

@@ -71,9 +71,10 @@ class Worker:
         loop = asyncio.get_running_loop()
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, self._stop.set)
-        self._link.start()
         # The estimator thread takes incidents up only after this: its compiled loops are loaded, or made.
-        self._compute.submit(warm_up)
+        warm = asyncio.wrap_future(self._compute.submit(warm_up))
+        # Whoever asks whether a worker is there hears of one that can compute.
+        warm.add_done_callback(lambda _: self._link.start())
         self._compute.submit(tune_for_serving)
         chores = [asyncio.create_task(chore()) for chore in (self._poll, self._renew, self._listen)]
         stopped = asyncio.create_task(self._stop.wait())

@@ -26,9 +26,8 @@ WARMING_PER_S = RATE_WALK**2
 Noise = tuple[float, float, float, float, float, float]
 """Variances of east, north, up (m²), ψ (rad²), β (rad²/s²) and s."""
 NOTHING = (0.0,) * 6
-
-
 SET_OFF: Noise = (0.0, 0.0, 0.0, 0.0, physics.SET_OFF_BIAS_RADPS**2, 0.0)
+"""What a bias is unsure by of which a standstill has told, once its bearer goes."""
 
 
 class Turn(NamedTuple):

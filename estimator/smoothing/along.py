@@ -82,7 +82,7 @@ def costed(parts: Parts, index: int, loose: Loose, flip: Flip, others: list[int]
     layout, x = parts.problem.layout, parts.x
 
     def told(one: Flip) -> Costed:
-        # A way of minutes that is turned as a whole is far off at its end, however well it fits once solved.
+        # Unsolved, the beginning of a turned way tells more than its end.
         part = parts.of({index, *(i for i, _ in one.along)}, parts.stages(one)[0])
         return Costed(part.more(imaged(layout, x, index, one, loose)), one)
 

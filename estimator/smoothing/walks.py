@@ -162,14 +162,14 @@ def unit_motion(between: Array, durations_s: Array, states: Array) -> Motion:
             transition[i, r, 5] = (states[i + 1, r] - states[i, r]) / scale
         for c in range(STATES):
             information[i, c, c] = 1.0 / noise[i, c, c]
-        swing(transition[i, 0, 3], transition[i, 1, 3], noise[i], information[i])
+        veer(transition[i, 0, 3], transition[i, 1, 3], noise[i], information[i])
         transition[i, 0, 3] = states[i, 1] - states[i + 1, 1]
         transition[i, 1, 3] = states[i + 1, 0] - states[i, 0]
     return Motion(transition, noise, residual, information)
 
 
 @njit(cache=True)
-def swing(lever_e: float, lever_n: float, noise: Array, information: Array) -> None:
+def veer(lever_e: float, lever_n: float, noise: Array, information: Array) -> None:
     """Add what a heading's random walk on the way does to the end of a step, in closed form.
 
     Given where the heading ends, its walk still moves the end of a lever l sideways by v l² / 12: with the

@@ -47,7 +47,7 @@ def browser() -> Iterator[Browser]:
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server that the tests of a module share, each with incidents of its own."""
     with running(tmp_path_factory.mktemp("server") / "data") as server:
-        yield server
+        yield server.until_it_computes()
 
 
 @pytest.fixture

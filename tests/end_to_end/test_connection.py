@@ -15,7 +15,7 @@ from tests.running import Post, Server, eventually, running
 def own_server(tmp_path: Path) -> Iterator[Server]:
     """A server that this test may kill."""
     with running(tmp_path / "data") as server:
-        yield server
+        yield server.until_it_computes()
 
 
 def test_a_screen_whose_server_was_killed_says_so_ages_and_reconnects_by_itself(
@@ -37,7 +37,7 @@ def test_a_screen_whose_server_was_killed_says_so_ages_and_reconnects_by_itself(
     assert commander.board()["WALKER"].age_s >= 4
     assert commander.shape(FIRST_CREW) == "diamond"
 
-    own_server.start()
+    own_server.start().until_it_computes()
     eventually(lambda: not commander.connection_lost, within_s=15)
     heard(post, incident, step(time.time(), "walker", [1.0, 0, 0]))
     commander.sees("WALKER", "Live")

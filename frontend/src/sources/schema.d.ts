@@ -447,7 +447,8 @@ export interface components {
          *
          *     Attributes:
          *         log: the database answers.
-         *         worker: an estimator worker is connected. Without one telemetry is still taken, and dots go stale.
+         *         worker: an estimator worker is connected and ready to compute; it takes seconds to begin. Without one
+         *             telemetry is still taken, and dots go stale.
          */
         Readiness: {
             /** Log */
