@@ -244,7 +244,7 @@ class Problem:
         slacks_m: tuple[float, ...] = (),
         iterations: int = 20,
         resting: float = RESTING,
-        doubt: Array | None = None,
+        kinked: Array | None = None,
     ) -> Solved:
         """Newton's method as far as its curvature is positive, until nothing is to be had any more.
 
@@ -255,11 +255,13 @@ class Problem:
             iterations: at most so many steps.
             resting: promised gain in log likelihood ε at which it ends: no number with standard deviation σ
                 is then farther than √(2 ε) σ from where its step leads.
-            doubt: variance of each row's h(x) at the start, m; None: it is as good as can be.
+            kinked: another estimate, flat: where readings differ by it, each is as unsure at the start as
+                that; None: it is as good as can be.
         """
         linear, motions = self.linearise(x), self.motions(x)
         self.rows.widen(x, linear.jacobian)
         cost = self.cost(x, linear.residual, motions)
+        doubt = None if kinked is None else (self.rows.residual(kinked) - linear.residual) ** 2
         damping, near, rests = 0.0, False, False
         for iteration in range(iterations):
             slack = slacks_m[iteration] if iteration < len(slacks_m) else 0.0

@@ -181,8 +181,7 @@ def _solved(problem: Problem, x: Array, solved_t: float) -> Solved:
     free = any(walk.way is None for walk in problem.layout.walks)
     slacks = SLACKS_M if free else ()
     kinked = problem.going.kinked(x, physics.TICK_S)
-    doubt = (problem.rows.residual(kinked) - problem.rows.residual(x)) ** 2
-    solved = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING, doubt)
+    solved = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING, kinked)
     reckoned = problem.going.reckoned(x, solved_t)
     if problem.at(reckoned).cost >= solved.cost:
         return solved
