@@ -79,7 +79,7 @@ def _warm_chain() -> None:
     slab, columns = np.zeros(1, dtype=np.int64), np.zeros((1, ANY), dtype=np.int64)
     one, x = np.ones(1), np.zeros(n)
     couple(columns, n, n, np.zeros(1, dtype=np.int64), np.zeros((1, s), dtype=np.bool_))
-    localise(columns, n, n, slab, np.zeros((2, n + s), dtype=np.int64), slab.copy())
+    localise(columns, n, n, slab, np.zeros((2, n + s), dtype=np.int64))
     scatter_rows(slab, slab, columns, np.zeros((1, ANY)), one, one, diagonal, wide, corner, rest)
     between, states = np.zeros((1, 12)), np.zeros((k, n))
     motion = unit_motion(between, one, states)

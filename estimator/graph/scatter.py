@@ -41,22 +41,26 @@ def couple(columns: Integers, width: int, size: int, label: Integers, touched: N
 
 @njit(cache=True)
 def localise(
-    columns: Integers, width: int, size: int, group_of: Integers, place: Integers, group: Integers
-) -> Integers:
-    """Columns of rows in the numbering of their groups, m × c.
+    columns: Integers, width: int, size: int, group_of: Integers, place: Integers
+) -> tuple[Integers, Integers, Integers]:
+    """Columns of rows in the numbering of their groups, and which rows are of each group.
 
     Args:
         columns: as `couple` takes them.
         width: columns of a keyframe.
         size: columns of a block.
         group_of: group of each block.
-        place: column of each group's numbering, groups × all columns.
-        group: of each row, m, changed: the last one where it touches nothing that moves.
+        place: column of each group's numbering, groups × all columns; what touches nothing that moves is of
+            the last group.
+
+    Returns:
+        The columns, m × c; the rows, group after group and in order, m; where each group begins among these,
+        and where the last one ends, groups + 1.
     """
     m, most = columns.shape
-    found = np.full((m, most), -1, dtype=np.int64)
+    found, group = np.full((m, most), -1, dtype=np.int64), np.full(m, len(place) - 1)
+    ends = np.zeros(len(place) + 1, dtype=np.int64)
     for r in range(m):
-        group[r] = len(place) - 1
         for a in range(most):
             if 0 <= columns[r, a] < width:
                 group[r] = group_of[columns[r, a] // size]
@@ -64,7 +68,14 @@ def localise(
         for a in range(most):
             if columns[r, a] >= 0:
                 found[r, a] = place[group[r], columns[r, a]]
-    return found
+        ends[group[r] + 1] += 1
+    for g in range(len(place)):
+        ends[g + 1] += ends[g]
+    order, following = np.empty(m, dtype=np.int64), ends.copy()
+    for r in range(m):
+        order[following[group[r]]] = r
+        following[group[r]] += 1
+    return found, order, ends
 
 
 @njit(cache=True)

@@ -63,7 +63,7 @@ class Groups:
         for columns in coupled:
             couple(columns, width, STATES, label, touched)
         found = []
-        for first in np.unique(label).tolist():
+        for first in np.flatnonzero(label == np.arange(count)).tolist():
             walks = np.flatnonzero(label == first)
             columns = (STATES * walks[:, None] + np.arange(STATES)).ravel()
             found.append(Group(walks, columns, np.flatnonzero(touched[walks].any(axis=0))))
@@ -82,8 +82,5 @@ class Groups:
 
     def placed(self, slab: Integers, columns: Integers) -> Placed:
         """Rows with columns as in `coupled`, each in its own group's numbering."""
-        group = np.empty(len(columns), dtype=np.int64)
-        local = localise(columns, self._width, STATES, self._group, self._place, group)
-        order = np.argsort(group, kind="stable")
-        ends = np.searchsorted(group[order], np.arange(len(self.each) + 1)).tolist()
-        return Placed(slab, local, [order[first:last] for first, last in pairwise(ends)])
+        local, order, ends = localise(columns, self._width, STATES, self._group, self._place)
+        return Placed(slab, local, [order[first:last] for first, last in pairwise(ends.tolist())])
