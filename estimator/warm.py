@@ -18,7 +18,7 @@ from estimator.fusion.swings import swung_m2
 from estimator.fusion.update import odd, tally
 from estimator.fusion.way import End, offset
 from estimator.graph.dense import factorise, inverse
-from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute
+from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute, take_off
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
 from estimator.graph.scatter import add_motion, add_part, couple, localise, scatter_rows
@@ -93,6 +93,7 @@ def _warm_chain() -> None:
     led_by(states, np.zeros((k, 12))[:, :3], np.zeros((k, 12))[:, 3:6], np.ones(k))
     add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)
     eliminate(0, k, diagonal, link, wide)
+    take_off(0, k, wide, corner.copy(), rest.copy())
     substitute(diagonal, link, wide, rest, np.zeros((k, n)))
     add_part(slab, corner, rest, corner, rest)
     selected_inverse(diagonal, link, wide, corner, np.zeros((k, 1, n, n)), np.zeros((k - 1, 1, n, n)))

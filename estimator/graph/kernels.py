@@ -9,7 +9,7 @@ from estimator.graph.dense import Array
 Integers = NDArray[np.int64]
 
 NARROW = 6
-"""Keyframes of so few numbers are eliminated faster by plain loops than by calls of BLAS."""
+"""Keyframes of one walk are eliminated faster by plain loops than by calls of BLAS."""
 
 
 @njit(cache=True)
@@ -71,7 +71,7 @@ def eliminate(first: int, last: int, diagonal: Array, link: Array, wide: Array) 
         The keyframe that could not be eliminated, as it is after those before it; `last`: there is none.
     """
     length, width, across = wide.shape
-    if width <= NARROW:
+    if width == NARROW and link.shape[1] == 1:
         return eliminate_narrow(first, last, diagonal, link, wide)
     inverse, half = np.empty((width, width)), np.empty((width, width))
     done, lost, taken = np.empty((width, across)), np.empty((width, width)), np.empty((width, across))
@@ -95,41 +95,81 @@ def eliminate(first: int, last: int, diagonal: Array, link: Array, wide: Array) 
 
 @njit(cache=True)
 def eliminate_narrow(first: int, last: int, diagonal: Array, link: Array, wide: Array) -> int:
-    """`eliminate` for keyframes of few numbers."""
-    length, width, across = wide.shape
-    size = link.shape[2]
-    inverse, half = np.empty((width, width)), np.empty((width, width))
+    """`eliminate` for keyframes of one block of `NARROW` numbers."""
+    length, _, across = wide.shape
+    inverse, half = np.empty((NARROW, NARROW)), np.empty((NARROW, NARROW))
+    back, done = np.empty((NARROW, NARROW)), np.empty((NARROW, across))
     for j in range(first, last):
-        inverse[:] = diagonal[j]
+        for r in range(NARROW):
+            for c in range(NARROW):
+                inverse[r, c] = diagonal[j, r, c]
         if not half_inverse(inverse):
             return j
-        diagonal[j] = inverse
-        # W from below: the rows above are still what they were.
-        for r in range(width - 1, -1, -1):
-            share = inverse[r, r]
+        for r in range(NARROW):
+            for c in range(NARROW):
+                diagonal[j, r, c] = inverse[r, c]
             for i in range(across):
-                wide[j, r, i] *= share
-            for c in range(r):
-                share = inverse[r, c]
-                for i in range(across):
-                    wide[j, r, i] += share * wide[j, c, i]
+                done[r, i], wide[j, r, i] = wide[j, r, i], 0.0
+        for r in range(NARROW):
+            add_narrow(inverse, r, done, wide, j)
         if j == length - 1:
             break
-        half[:] = 0.0
-        for r in range(width):
-            for c in range(r + 1):
-                block, share = c // size, inverse[r, c]
-                at = block * size
-                for i in range(size):
-                    half[r, at + i] += share * link[j, block, i, c - at]
-        for a in range(width):
-            for r in range(width):
-                share = half[r, a]
-                for i in range(width):
-                    diagonal[j + 1, a, i] -= share * half[r, i]
-                for i in range(across):
-                    wide[j + 1, a, i] -= share * wide[j, r, i]
+        for r in range(NARROW):
+            for i in range(across):
+                done[r, i] = wide[j, r, i]
+            for a in range(NARROW):
+                total = 0.0
+                for c in range(r + 1):
+                    total += inverse[r, c] * link[j, 0, a, c]
+                half[r, a], back[a, r] = total, -total
+        for a in range(NARROW):
+            add_narrow(back, a, half, diagonal, j + 1)
+            add_narrow(back, a, done, wide, j + 1)
     return last
+
+
+@njit(cache=True, forceinline=True)
+def add_narrow(shares: Array, row: int, rows: Array, targets: Array, at: int) -> None:
+    """Add to a row of one of some matrices shares of `NARROW` rows.
+
+    All of them at once: each sum stays in a register, and the loop along the row is one of vectors.
+
+    Args:
+        shares: n × `NARROW`.
+        row: which of their rows counts, and which one of the matrix is changed.
+        rows: `NARROW` × m.
+        targets: k × n × m, changed.
+        at: which matrix.
+    """
+    a, b, c = shares[row, 0], shares[row, 1], shares[row, 2]
+    d, e, f = shares[row, 3], shares[row, 4], shares[row, 5]
+    for i in range(rows.shape[1]):
+        total = a * rows[0, i] + b * rows[1, i] + c * rows[2, i] + d * rows[3, i] + e * rows[4, i]
+        targets[at, row, i] += total + f * rows[5, i]
+
+
+@njit(cache=True)
+def take_off(first: int, last: int, wide: Array, corner: Array, gradient: Array) -> float:
+    """Take off the border what it has lost by `eliminate`, Wᵀ W.
+
+    Args:
+        first: keyframe that was eliminated first.
+        last: keyframe after the one that was last.
+        wide: W, k × n × (s + 1).
+        corner: s × s, changed.
+        gradient: s, changed.
+
+    Returns:
+        What the gradient loses beside them, gᵀ D⁻¹ g of the keyframes.
+    """
+    width, across = wide.shape[1:]
+    done = wide[first:last].reshape((last - first) * width, across)
+    taken = np.dot(done.T, done)
+    for r in range(across - 1):
+        gradient[r] -= taken[r, across - 1]
+        for c in range(across - 1):
+            corner[r, c] -= taken[r, c]
+    return float(taken[across - 1, across - 1])
 
 
 @njit(cache=True)

@@ -7,7 +7,7 @@ Kirchhoff matrix of its part of the border. Cost grows with the length of the ch
 import numpy as np
 
 from estimator.graph.dense import Array, mended
-from estimator.graph.kernels import Integers, eliminate, selected_inverse, substitute
+from estimator.graph.kernels import Integers, eliminate, selected_inverse, substitute, take_off
 from estimator.graph.scatter import scatter_rows
 from estimator.smoothing.groups import Group, Placed
 
@@ -92,11 +92,7 @@ class Strand:
                     raise ValueError("the normal equations of the incident are not positive definite")
                 self.diagonal[at] = mended(self.diagonal[at])
                 mended_at = at
-        wide = self.wide[self._done : until].reshape(-1, self.wide.shape[2])
-        taken = wide.T @ wide
-        self.corner -= taken[:-1, :-1]
-        self.corner_gradient -= taken[:-1, -1]
-        self.eased += float(taken[-1, -1])
+        self.eased += take_off(self._done, until, self.wide, self.corner, self.corner_gradient)
         self._done = until
 
     def substitute(self, fixed: Array) -> Array:
