@@ -13,7 +13,7 @@ from estimator.fusion.motion import walked
 from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.report import shown
 from estimator.fusion.rows import FIELDS, ONE
-from estimator.fusion.silence import wandered_m2
+from estimator.fusion.silence import unheard_m2
 from estimator.fusion.swings import swung_m2
 from estimator.fusion.update import odd, tally
 from estimator.fusion.way import End, offset
@@ -139,7 +139,7 @@ def _warm_filter() -> None:
     inverted(graph.storage()[0], np.eye(3))
     swung_m2(np.zeros((1, 2, 1)), np.ones(1))
     walked(np.zeros((1, 12)), graph.reference)
-    wandered_m2(1.0, 0.0)
+    unheard_m2(1.0, 0.0)
     free_motion("responder", 1.0)
     prior_sigma_radps(0.0, 0.0, np.ones((1, 2)))
     table = np.full((1, FIELDS), 0.5)

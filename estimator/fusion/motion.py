@@ -13,7 +13,7 @@ from estimator.fusion.ledger import GYRO_BIAS
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.physics import NOISES
 from estimator.fusion.rows import Single
-from estimator.fusion.silence import SILENT_S, wandered_m2
+from estimator.fusion.silence import SILENT_S, unheard_m2
 from estimator.fusion.state import Count, FusionState
 from estimator.fusion.steps import Step, start_of, sum_of
 from estimator.graph.dense import Array, Indices
@@ -153,7 +153,7 @@ def walked(steps: Array, x: Array) -> tuple[Indices, Array, Array, Array]:
 def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
     """Units have not reported up to an epoch at which something else is to be held against their position.
 
-    Their bearers may have stood or walked (`silence.wandered_m2`). A displacement that comes later counts for
+    Their bearers may have stood or walked (`silence.unheard_m2`). A displacement that comes later counts for
     the part of its time that is left.
 
     Args:
@@ -167,7 +167,7 @@ def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
         if since_s < SILENT_S <= since_s + t - node.pose_t:
             # From now on ranges alone tell where he goes.
             state.suspected = True
-        wander = wandered_m2(t - node.pose_t, since_s)
+        wander = unheard_m2(t - node.pose_t, since_s)
         across, up = wander, 0.1 * wander
         noise[i, 0, 0], noise[i, 1, 1], noise[i, 2, 2] = across, across, up
         step = (0.0, 0.0, 0.0, across, up, 0.0, 0.0, 0.0, 1.0)

@@ -5,8 +5,9 @@ public sets plaza1, danis and hanyang, and the scenarios of `estimator.simulate`
 therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M`, `SCALE_SIGMA`,
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
 `FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE`, `WALL_M`, `EXCESS_M` and the two after
-it, `SET_OFF_BIAS_RADPS` (with plaza2 in view as well), and that the spread of gyro biases is uniform up to
-`BIAS_SIGMA_MOST_RADPS`, not in its logarithm. M marks what estimation.md reports as measured.
+it, `UNHEARD_MEMORY_S`, `SET_OFF_BIAS_RADPS` (with plaza2 in view as well), and that the spread of gyro biases
+is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm. M marks what estimation.md reports as
+measured.
 
 Some stand in compiled functions, which keep the number that they were compiled with: after a change remove
 `__pycache__` (decision 0007).
@@ -72,6 +73,8 @@ GAP_MPS = 1.0
 SILENT_SPEED_MPS, SILENT_MEMORY_S = 0.7, 1.0
 """While a unit reports nothing, its bearer walks about with so much along each horizontal axis: after some
 seconds a random walk of 1 m per root second."""
+UNHEARD_MEMORY_S = 5.0
+"""Who is not heard of at all keeps his way for as long as those without PDR do: along a corridor."""
 
 # Nodes without PDR: a velocity that is forgotten with time (Singer's model, for velocity).
 SPEED_SIGMA_MPS: dict[str, tuple[float, float]] = {"responder": (1.0, 0.2), "uav": (5.0, 2.0)}

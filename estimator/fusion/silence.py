@@ -28,6 +28,21 @@ def wandered_m2(span_s: float, since_s: float) -> float:
 
 
 @njit(cache=True)
+def unheard_m2(span_s: float, since_s: float) -> float:
+    """The same of somebody of whom nothing at all is heard in that part, at least (m²).
+
+    Who searches a corridor keeps his way for longer than a second. What he is heard of each second shows it;
+    where nothing shows it he may be that much farther.
+
+    Args:
+        span_s: how long he is not heard of (s).
+        since_s: how long his unit has reported nothing before that (s); infinite: nobody knows.
+    """
+    kept = gone_m2(physics.SILENT_SPEED_MPS, physics.UNHEARD_MEMORY_S, span_s, 0.0)
+    return max(wandered_m2(span_s, since_s), kept)
+
+
+@njit(cache=True)
 def gone_m2(speed_mps: float, memory_s: float, span_s: float, since_s: float) -> float:
     """The same of any usual speed along an axis, and any time in which it is forgotten (m²)."""
     span = min(max(span_s, 0.0), LONGEST_S)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from estimator.fusion import physics
 from estimator.fusion.introduce import attach_unit
-from estimator.fusion.silence import wandered_m2
+from estimator.fusion.silence import unheard_m2, wandered_m2
 from estimator.fusion.state import FusionState
 from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
@@ -20,6 +20,7 @@ from estimator.measurements.position import Position
 from estimator.measurements.range import Range
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.ellipses import INSIDE
 
 
 @pytest.mark.parametrize("silent_s", [0.2, 1.0, 5.0])
@@ -68,9 +69,18 @@ def silent_sigma_m(fixes_s: list[float]) -> float:
     return float(np.sqrt(state.graph.covariance()[rows, rows][0, 0]))
 
 
-def test_a_long_silence_is_as_long_however_often_something_is_held_against_it() -> None:
-    assert silent_sigma_m([9.0]) == pytest.approx(silent_sigma_m([2.0, 3.0, 4.5, 6.0, 9.0]), rel=1e-3)
-    assert silent_sigma_m([9.0]) == pytest.approx(math.sqrt(wandered_m2(8.0, 0.0)), rel=0.05)
+@pytest.mark.parametrize("unheard_s", [5.0, 15.0, 30.0])
+def test_who_walks_on_along_a_corridor_unheard_is_within_what_holds_95_percent(unheard_s: float) -> None:
+    corridor_mps = 0.8
+    assert (corridor_mps * unheard_s) ** 2 / unheard_m2(unheard_s, 0.0) < INSIDE
+    assert (corridor_mps * unheard_s) ** 2 / unheard_m2(unheard_s, math.inf) < INSIDE
+
+
+def test_of_whom_nothing_is_heard_may_be_farther_than_who_is_heard_of_each_second() -> None:
+    often = [float(t) for t in range(2, 10)]
+    assert silent_sigma_m(often) == pytest.approx(math.sqrt(wandered_m2(8.0, 0.0)), rel=0.05)
+    assert silent_sigma_m([9.0]) == pytest.approx(math.sqrt(unheard_m2(8.0, 0.0)), rel=0.05)
+    assert silent_sigma_m([9.0]) > 1.5 * silent_sigma_m(often)
 
 
 def test_whoever_is_silent_for_a_quarter_of_an_hour_grows_less_sure_all_the_time() -> None:
