@@ -113,7 +113,7 @@ def _warm_chain() -> None:
     residuals(readings, x)
     add_unsure(jacobians(readings, x), place, place, place, place, np.ones(5))
     apart(readings, x)
-    stretch(readings, x, no, no, one)
+    stretch(readings, x, no, no, one, one)
     excess(slab, one, one)
     once_a_second(one, slab, one)
     costs_of(one, one, place, no, one)

@@ -8,7 +8,7 @@ from numba import njit
 
 from estimator.fusion import echoes, links, physics, rows, way
 from estimator.fusion.ledger import BEARING, BODY_BEARING, COLUMNS, RANGE, RSSI
-from estimator.fusion.noise import link_sigma
+from estimator.fusion.noise import link_sigma, through_sigma
 from estimator.graph.dense import Array
 
 T, VALUE, SIGMA, CONSTANT, TECHNOLOGY, LINK, A, B = range(8)
@@ -128,7 +128,7 @@ def fill(
         through = abs(up_m(a, x) + at_a[2] - up_m(b, x) - at_b[2]) > physics.FLOOR_M
         if through and a[way.OUTSIDE] == 0.0 and b[way.OUTSIDE] == 0.0:
             # It tells nothing of what its technology is like where no floor is between.
-            sigma = math.hypot(sigma, physics.FLOOR_SIGMA[1 if technology[KIND] == RSSI else 0])
+            sigma = through_sigma(sigma, technology[KIND] == RSSI, alike)
             source = link = -1.0
         unsure_m = math.hypot(
             way.turned_m(at_a) if a[way.TURNED] != 0.0 else 0.0,

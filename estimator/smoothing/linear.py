@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from estimator.fusion import physics
 from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE
+from estimator.fusion.noise import through_sigma
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import bearing_at
@@ -186,7 +187,12 @@ def apart(readings: Readings, x: Array) -> Array:
 
 @njit(cache=True)
 def stretch(
-    readings: Readings, x: Array, inside: NDArray[np.bool_], strongest: NDArray[np.bool_], sigma: Array
+    readings: Readings,
+    x: Array,
+    inside: NDArray[np.bool_],
+    strongest: NDArray[np.bool_],
+    alike: Array,
+    sigma: Array,
 ) -> None:
     """Through a floor a reading is worth little, and an encounter is sharp.
 
@@ -195,6 +201,7 @@ def stretch(
         x: the estimate, flat.
         inside: which pairs are ranges or powers inside the building, m.
         strongest: which are the strongest powers of their links for some time, m.
+        alike: which number in its row of alike readings each one is, m at least.
         sigma: standard deviations of all rows, m at least, changed.
     """
     way, kinds, extra = apart(readings, x), readings.kind, readings.extra
@@ -202,7 +209,7 @@ def stretch(
     for i in range(len(kinds)):
         e, n, u = way[i, 0], way[i, 1], way[i, 2]
         if inside[i] and abs(u) > physics.FLOOR_M:
-            sigma[i] = np.hypot(sigma[i], physics.FLOOR_SIGMA[0 if kinds[i] == RANGE else 1])
+            sigma[i] = through_sigma(sigma[i], kinds[i] != RANGE, alike[i])
         close = strongest[i] and np.sqrt(e * e + n * n + u * u) <= physics.ENCOUNTER_M
         if close and value[i] >= near_dbm(x[extra[i, 0]] + constants[i], x[extra[i, 1]]):
             sigma[i] = physics.NEAR_SIGMA_DB

@@ -241,7 +241,7 @@ class Rows:
             jacobian: of the rows, m × 14, by which the noise of a place becomes one of the reading.
         """
         self.sigma = self._told.copy()
-        stretch(self._readings, x, self._inside, self._strongest, self.sigma)
+        stretch(self._readings, x, self._inside, self._strongest, self.alike, self.sigma)
         add_unsure(jacobian, *self._unsure_m2, self.sigma)
 
     def places(self, x: Array) -> tuple[Array, Array]:

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from estimator.fusion.noise import LearnedNoise, link_sigma
+from estimator.fusion import physics
+from estimator.fusion.noise import LearnedNoise, link_sigma, through_sigma
 
 
 def test_the_learned_factor_follows_the_errors_that_come_in() -> None:
@@ -42,3 +43,10 @@ def test_alike_readings_are_together_worth_no_more_than_their_common_error_allow
 def test_independent_readings_keep_their_full_worth() -> None:
     noise = LearnedNoise(count=100.0, squares=100.0, pairs=100.0, products=0.0)
     assert link_sigma(noise.factor, noise.shared, 0.3, 50.0) == pytest.approx(0.3)
+
+
+def test_however_often_one_listens_through_a_floor_it_tells_no_more_than_the_floor_lets() -> None:
+    told = [through_sigma(5.0, True, k) ** -2 for k in range(1, 1001)]
+    assert told[0] == pytest.approx(1.0 / (5.0**2 + physics.FLOOR_SIGMA[1] ** 2))
+    assert sum(told) == pytest.approx(physics.FLOOR_SIGMA[1] ** -2, rel=1e-3)
+    assert through_sigma(0.3, False, 7.0) == pytest.approx(np.hypot(0.3, physics.FLOOR_SIGMA[0]))
