@@ -54,7 +54,7 @@ def warm_up() -> None:
     strided = np.full((2, 3), 0.5).T
     for states in ((one, one), (strided[0], strided[1])):
         predict_range(place, place, *states)
-    predict_rssi(place, place, one, strided[1])
+    predict_rssi(one, place, place, one, strided[1])
     boot, rests = Boot.new(0.0), np.zeros((60, 3)) + np.array([0.0, 0.0, 9.8])
     taken = advance(boot, rests, np.zeros((60, 3)), 0.01)
     advance(boot, rests[taken:], np.zeros((60, 3))[taken:], 0.01)
@@ -113,7 +113,7 @@ def _warm_chain() -> None:
     residuals(readings, x)
     add_unsure(jacobians(readings, x), place, place, place, place, np.ones(5))
     apart(readings, x)
-    stretch(readings, x, no, no, one, one)
+    stretch(readings, x, no, no, one, one, one)
     excess(slab, one, one)
     once_a_second(one, slab, one)
     costs_of(one, one, place, no, one)

@@ -15,7 +15,7 @@ from estimator.fusion import physics
 from estimator.fusion.images import Otherwise, mirrored
 from estimator.fusion.introduce import NO_PRIOR_SIGMA_M, Entered, place
 from estimator.fusion.ledger import RANGE
-from estimator.fusion.modes import Mode, Sought, costs_of, find_modes, short_costs
+from estimator.fusion.modes import Mode, Sought, costs_of, find_modes, residuals_of, short_costs
 from estimator.fusion.nodes import NodeState
 from estimator.fusion.pairs import path_loss_states, technology_states
 from estimator.fusion.sightings import Sightings, heard_between, of_node
@@ -23,8 +23,6 @@ from estimator.fusion.silence import gone_m2
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements.node import MOVING_ROLES
-from estimator.measurements.range import predict_range
-from estimator.measurements.rssi import predict_rssi
 
 
 class Chosen(NamedTuple):
@@ -131,9 +129,8 @@ def _odd_cost(mode: Mode, sought: Sought, alike: Array, outliers: float) -> floa
         outliers: share of the readings that are.
     """
     ranged, m = sought.kind == "range", len(sought.value)
-    predict, usual = (predict_range, physics.RANGE_NOISE) if ranged else (predict_rssi, physics.RSSI_NOISE)
-    there, extra = np.tile(mode.position_m, (m, 1)), (np.full(m, one) for one in mode.extra)
-    residual = sought.value - predict(sought.points, there, *extra).predicted
+    usual = physics.RANGE_NOISE if ranged else physics.RSSI_NOISE
+    residual = residuals_of(sought, mode.position_m, mode.extra)
     noise = np.tile((outliers, usual.shift, usual.spread), (m, 1))
     costs = costs_of(residual, sought.sigma, noise, np.full(m, ranged), alike)
     if ranged:

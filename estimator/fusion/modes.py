@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from estimator.graph.dense import Array
 from estimator.graph.robust import cauchy_cost, mixture_cost
 from estimator.graph.triangular import factorised, solved
-from estimator.measurements.range import range_at
-from estimator.measurements.rssi import rssi_at
+from estimator.measurements.range import predict_range, range_at
+from estimator.measurements.rssi import predict_rssi, rssi_at
 
 ANGLES = 12
 STEPS = 25
@@ -95,6 +95,21 @@ class Mode(NamedTuple):
     sigma_m: float
     up_sigma_m: float
     extra: Array
+
+
+def residuals_of(sought: Sought, place_m: Array, extra: Array) -> Array:
+    """What was measured less what is predicted if the node is at a place, m.
+
+    Args:
+        sought: what was measured.
+        place_m: the place, 3 (m).
+        extra: states of the technology, 2.
+    """
+    m = len(sought.value)
+    there, states = np.tile(place_m, (m, 1)), (np.full(m, one) for one in extra)
+    if sought.kind == "range":
+        return sought.value - predict_range(sought.points, there, *states).predicted
+    return sought.value - predict_rssi(sought.value, sought.points, there, *states).predicted
 
 
 def find_modes(sought: Sought) -> list[Mode]:
@@ -221,7 +236,10 @@ def _linearise(
     for i in range(len(value)):
         e, n, u = points[i, 0] - state[0], points[i, 1] - state[1], points[i, 2] - state[2]
         squared = e * e + n * n + u * u
-        got = range_at(squared, state[3], state[4]) if ranged else rssi_at(squared, state[3], state[4])
+        if ranged:
+            got = range_at(squared, state[3], state[4])
+        else:
+            got = rssi_at(value[i], squared, state[3], state[4])
         residual = (value[i] - got.predicted) / sigma[i]
         loss = 1.0 + (residual / CAUCHY) ** 2
         cost += 0.5 * CAUCHY**2 * np.log(loss)

@@ -167,7 +167,7 @@ def linearise(table: Array, columns: Indices, x: Array, jacobian: Array, residua
             if kind == RANGE:
                 got = predict_range(own, others, one, two)
             elif kind == RSSI:
-                got = predict_rssi(own, others, one, two)
+                got = predict_rssi(table[first:last, VALUE], own, others, one, two)
             else:
                 got = predict_bearing(own, others, one)
             off = table[first:last, VALUE] - got.predicted

@@ -26,7 +26,9 @@ class Rssi(PairReading, tag="rssi", frozen=True):
 
 
 ANTENNA_M = 0.3
-"""Antennas never coincide: a boot passes a breadcrumb at about this distance; the logarithm stays finite."""
+"""A boot passes a breadcrumb at about this distance; the logarithm stays finite."""
+TOUCHING_M = 0.03
+"""Antennas never coincide, nor are they nearer than this when one radio lies on the other."""
 
 
 @njit(cache=True)
@@ -37,30 +39,42 @@ def rssi_slope(squared_m2: float, exponent: float) -> float:
 
 
 @njit(cache=True)
-def rssi_at(squared_m2: float, power_dbm: float, exponent: float) -> Along:
-    """One power at ‖a − b‖² (m²); see `predict_rssi`."""
+def rssi_at(heard_dbm: float, squared_m2: float, power_dbm: float, exponent: float) -> Along:
+    """What the law predicts at ‖a − b‖² (m²) of a power that was heard; see `predict_rssi`."""
     # The natural logarithm takes half as long as the other one.
     tens = 5.0 / np.log(10.0) * np.log(squared_m2 + ANTENNA_M * ANTENNA_M)
-    return Along(power_dbm - exponent * tens, rssi_slope(squared_m2, exponent), 1.0, -tens)
+    slope, beside = rssi_slope(squared_m2, exponent), 10.0 / np.log(10.0) * np.log(ANTENNA_M)
+    over = heard_dbm - (power_dbm - exponent * beside)
+    if over <= 0.0:
+        return Along(power_dbm - exponent * tens, slope, 1.0, -tens)
+    nearer = 10.0 / np.log(10.0) * np.log(ANTENNA_M / TOUCHING_M)
+    if over <= exponent * nearer:
+        return Along(heard_dbm - exponent * (tens - beside), slope, 0.0, beside - tens)
+    return Along(power_dbm - exponent * (tens - nearer), slope, 1.0, nearer - tens)
 
 
 @njit(cache=True)
-def predict_rssi(a: Array, b: Array, power_dbm: Array, exponent: Array) -> PairJacobian:
+def predict_rssi(heard_dbm: Array, a: Array, b: Array, power_dbm: Array, exponent: Array) -> PairJacobian:
     """Received power by the log-distance law: P0 − 10 n log10 d, Gaussian in dB (estimation.md, point 4).
 
+    Places are never known as well as radios lie on each other: a power of more than there is at `ANTENNA_M`
+    says that both ends are so near, and not by how much nearer, down to `TOUCHING_M`. It would otherwise
+    raise P0, and all other radios would seem too weak and be thought farther away.
+
     Args:
+        heard_dbm: what was received, m (dBm).
         a: positions, m × 3 (m).
         b: positions, m × 3 (m).
         power_dbm: P0, received at 1 m, m (dBm).
         exponent: n, path-loss exponent, m.
     """
     m = len(a)
-    predicted, by_a, by_b, by_extra = np.empty(m), np.empty((m, 3)), np.empty((m, 3)), np.ones((m, 2))
+    predicted, by_a, by_b, by_extra = np.empty(m), np.empty((m, 3)), np.empty((m, 3)), np.empty((m, 2))
     for i in range(m):
         e, n, u = a[i, 0] - b[i, 0], a[i, 1] - b[i, 1], a[i, 2] - b[i, 2]
-        found = rssi_at(e * e + n * n + u * u, power_dbm[i], exponent[i])
+        found = rssi_at(heard_dbm[i], e * e + n * n + u * u, power_dbm[i], exponent[i])
         along = found.by_a
         by_a[i, 0], by_a[i, 1], by_a[i, 2] = e * along, n * along, u * along
         by_b[i, 0], by_b[i, 1], by_b[i, 2] = -e * along, -n * along, -u * along
-        by_extra[i, 1], predicted[i] = found.by_second, found.predicted
+        by_extra[i, 0], by_extra[i, 1], predicted[i] = found.by_first, found.by_second, found.predicted
     return PairJacobian(predicted, by_a, by_b, by_extra)

@@ -6,12 +6,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from estimator.fusion.ledger import RANGE
-from estimator.fusion.modes import Mode, Sought, costs_of, find_modes
+from estimator.fusion.modes import Mode, Sought, costs_of, find_modes, residuals_of
 from estimator.fusion.nodes import NodeState
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
-from estimator.measurements.range import predict_range
-from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.solve import Problem
 from estimator.smoothing.solved import Solved
 
@@ -52,10 +50,7 @@ class Seen(NamedTuple):
 
     def residual_at(self, place_m: Array) -> Array:
         """Residuals of the readings if the node were at a place (3, m), m."""
-        sought, ones = self.sought, np.ones(len(self.t))
-        predict = predict_range if sought.kind == "range" else predict_rssi
-        there = np.tile(place_m, (len(self.t), 1))
-        return sought.value - predict(sought.points, there, *(ones * e for e in sought.extra)).predicted
+        return residuals_of(self.sought, place_m, self.sought.extra)
 
 
 class Place(NamedTuple):

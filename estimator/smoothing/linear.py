@@ -63,11 +63,12 @@ class Seen(NamedTuple):
 
 
 @njit(cache=True)
-def see(kind: int, constant: float, first: float, second: float, a: Array, b: Array) -> Seen:
+def see(kind: int, value: float, constant: float, first: float, second: float, a: Array, b: Array) -> Seen:
     """One pair with its ends at a and b, 3 each (m).
 
     Args:
         kind: see `Readings`.
+        value: see `Readings`.
         constant: see `Readings`; of a bearing, all that it counts from (rad).
         first: first state of its technology.
         second: second one.
@@ -79,7 +80,10 @@ def see(kind: int, constant: float, first: float, second: float, a: Array, b: Ar
         found = bearing_at(-e, -n, constant)
         return Seen(found.predicted, found.by_e, found.by_n, 0.0, -1.0, 0.0)
     squared = e * e + n * n + u * u
-    along = range_at(squared, first, second) if kind == RANGE else rssi_at(squared, first + constant, second)
+    if kind == RANGE:
+        along = range_at(squared, first, second)
+    else:
+        along = rssi_at(value, squared, first + constant, second)
     by_e, by_n, by_u = e * along.by_a, n * along.by_a, u * along.by_a
     return Seen(along.predicted, by_e, by_n, by_u, along.by_first, along.by_second)
 
@@ -112,7 +116,7 @@ def residuals(readings: Readings, x: Array) -> Array:
         place_end(ends_a, i, numbers, a, turned)
         place_end(ends_b, i, numbers, b, turned)
         constant = counted_from(kinds[i], constants[i], ends_a, i, x)
-        seen = see(kinds[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
+        seen = see(kinds[i], value[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
         found[i] = value[i] - seen.predicted
     on = place_ends(readings.on, x)
     for i in range(n):
@@ -135,14 +139,14 @@ def jacobians(readings: Readings, x: Array) -> Array:
     slope = np.empty(3)
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
     numbers = faced(x, ends_a, ends_b)
-    constants = readings.constant
+    value, constants = readings.value, readings.constant
     for i in range(m):
         kind = kinds[i]
         by_a[:], by_b[:] = 0.0, 0.0
         place_end(ends_a, i, numbers, a, by_a)
         place_end(ends_b, i, numbers, b, by_b)
         constant = counted_from(kind, constants[i], ends_a, i, x)
-        seen = see(kind, constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
+        seen = see(kind, value[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
         if ends_a.kind[i] != FIXED:
             slope[0], slope[1], slope[2] = seen.by_e, seen.by_n, seen.by_u
             pull(slope, by_a, found[i, :6])
@@ -192,6 +196,7 @@ def stretch(
     inside: NDArray[np.bool_],
     strongest: NDArray[np.bool_],
     alike: Array,
+    alone: Array,
     sigma: Array,
 ) -> None:
     """Through a floor a reading is worth little, and an encounter is sharp.
@@ -202,6 +207,7 @@ def stretch(
         inside: which pairs are ranges or powers inside the building, m.
         strongest: which are the strongest powers of their links for some time, m.
         alike: which number in its row of alike readings each one is, m at least.
+        alone: standard deviation that each would have were there none alike, m at least.
         sigma: standard deviations of all rows, m at least, changed.
     """
     way, kinds, extra = apart(readings, x), readings.kind, readings.extra
@@ -212,7 +218,7 @@ def stretch(
             sigma[i] = through_sigma(sigma[i], kinds[i] != RANGE, alike[i])
         close = strongest[i] and np.sqrt(e * e + n * n + u * u) <= physics.ENCOUNTER_M
         if close and value[i] >= near_dbm(x[extra[i, 0]] + constants[i], x[extra[i, 1]]):
-            sigma[i] = physics.NEAR_SIGMA_DB
+            sigma[i] *= min(physics.NEAR_SIGMA_DB / alone[i], 1.0)
 
 
 @njit(cache=True)

@@ -25,6 +25,9 @@ from estimator.smoothing.obstructed import excess
 from estimator.smoothing.partial import partial
 from estimator.smoothing.rarer import once_a_second
 
+EACH = ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike", "turns", "_told", "_alone")
+"""What there is one of for each row."""
+
 
 class Linearised(NamedTuple):
     """Rows at an estimate.
@@ -76,6 +79,7 @@ class Rows:
         self.shift: Array = np.zeros(len(self.nominal))
         self.sigma: Array = self.nominal.copy()
         self._told: Array = self.nominal
+        self._alone: Array = self.nominal
         self._usual_noise: Array = self.noise
         self._white, self._common = self.nominal**2, np.zeros(len(self.nominal))
         self._unsure_m2 = self._a.unsure_m2, self._b.unsure_m2, self._on.unsure_m2, self._by.unsure_m2
@@ -163,7 +167,7 @@ class Rows:
         pairs, singles, drops = chosen[:m], chosen[m : m + n], chosen[m + n :: 3]
         unsure = zip(self._unsure_m2, (pairs, pairs, singles, drops), strict=True)
         other, columns = copy(self), self.columns[chosen]
-        for name in ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike", "turns", "_told"):
+        for name in EACH:
             setattr(other, name, getattr(self, name)[chosen])
         other.columns = np.where(columns >= 0, numbers.column[columns], -1)
         other.pairs, other.singles, other.drops = self.pairs[pairs], self.singles[singles], self.drops[drops]
@@ -212,7 +216,7 @@ class Rows:
         self._tell(white, common)
 
     def _tell(self, white: Array, common: Array) -> None:
-        self._told = sigmas(white, common, self._rows)
+        self._told, self._alone = sigmas(white, common, self._rows), np.sqrt(white + common)
         self.sigma = self._told.copy()
 
     def rarer(self) -> tuple[Integers, Self]:
@@ -241,7 +245,7 @@ class Rows:
             jacobian: of the rows, m × 14, by which the noise of a place becomes one of the reading.
         """
         self.sigma = self._told.copy()
-        stretch(self._readings, x, self._inside, self._strongest, self.alike, self.sigma)
+        stretch(self._readings, x, self._inside, self._strongest, self.alike, self._alone, self.sigma)
         add_unsure(jacobian, *self._unsure_m2, self.sigma)
 
     def places(self, x: Array) -> tuple[Array, Array]:

@@ -91,7 +91,7 @@ def linearise_plainly(table: Array, columns: Indices, x: Array) -> tuple[Array, 
     jacobian[:, 0] = 1.0
     for kind, got in (
         (RANGE, predict_range(a, b, first, second)),
-        (RSSI, predict_rssi(a, b, first, second)),
+        (RSSI, predict_rssi(table[:, VALUE], a, b, first, second)),
         (BEARING, predict_bearing(a, b, first)),
     ):
         mine = table[:, KIND] == kind

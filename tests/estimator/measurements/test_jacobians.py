@@ -1,6 +1,7 @@
 """Every residual's Jacobian against central differences: a wrong one still converges, to the wrong place."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from hypothesis import given
@@ -41,8 +42,15 @@ def test_ranges(seed: int) -> None:
 
 @given(seeds)
 def test_rssi(seed: int) -> None:
-    at = np.random.default_rng(seed).normal(0.0, 5.0, 8) + np.r_[np.zeros(6), -45.0, 10.0]
-    check_pair(lambda x: predict_rssi(x[None, :3], x[None, 3:6], x[6:7], x[7:8]), at)
+    chance = np.random.default_rng(seed)
+    at = chance.normal(0.0, 5.0, 8) + np.r_[np.zeros(6), -45.0, 10.0]
+    # Both as far as the law holds and where radios lie on each other, above all that it has.
+    for heard_dbm in (chance.uniform(-95.0, -45.0, 1), chance.uniform(40.0, 100.0, 1) + at[6:7]):
+        check_pair(partial(rssi_from, heard_dbm), at)
+
+
+def rssi_from(heard_dbm: Array, x: Array) -> PairJacobian:
+    return predict_rssi(heard_dbm, x[None, :3], x[None, 3:6], x[6:7], x[7:8])
 
 
 @given(seeds)
@@ -76,7 +84,7 @@ def test_at_distance_nought_every_prediction_and_jacobian_is_finite() -> None:
     at, one = np.zeros((1, 3)), np.ones(1)
     for got in (
         predict_range(at, at, one, one),
-        predict_rssi(at, at, one, one),
+        predict_rssi(one, at, at, one, one),
         predict_bearing(at, at, one),
     ):
         assert all(np.isfinite(part).all() for part in got)

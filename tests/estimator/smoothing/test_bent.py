@@ -1,5 +1,7 @@
 """The curvature of distances against how their slopes change, at random states."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -34,7 +36,8 @@ def test_distances_bend_as_their_slopes_change(incident: Problem, seed: int) -> 
     expected = np.zeros((len(x), len(x)))
     changes = difference(lambda at: np.subtract(*rows.places(at)).ravel(), x).reshape(m, 3, -1)
     a, b = rows.places(x)
-    for kind, predict in ((RANGE, predict_range), (RSSI, predict_rssi)):
+    heard_dbm = rows.pairs[kinds == RSSI, 4]
+    for kind, predict in ((RANGE, predict_range), (RSSI, partial(predict_rssi, heard_dbm))):
         mine = np.flatnonzero(kinds == kind)
         one, two = x[size - layout.width + rows.columns[mine, 12:14]].T
         around = [np.eye(3)[c] * step for step in (1e-5, -1e-5) for c in range(3)]

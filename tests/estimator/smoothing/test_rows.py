@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from estimator.fusion import physics
+from estimator.fusion.noise import LearnedNoise
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node, Role
 from estimator.measurements.range import Range
+from estimator.measurements.rssi import Rssi
 from tests.estimator.smoothing.windows import entered, fused, problem_of
 
 
@@ -40,6 +42,39 @@ def test_inside_ranges_of_a_link_are_worth_no_more_than_what_stays_while_nobody_
 
 def test_nothing_stays_between_a_responder_and_a_surveyed_anchor() -> None:
     assert worth_m("anchor") < 0.5 * physics.WALL_M
+
+
+def beside_db(seconds: int) -> tuple[float, float]:
+    """What is all that a responder hears of a breadcrumb that he stands on, worth together (dB).
+
+    Returns:
+        As an encounter; and had he not been so near.
+    """
+    chance = np.random.default_rng(7)
+    readings: list[AnyReading] = [
+        Node(t=0.0, node="other", role="breadcrumb", position_m=(0.0, 0.0, 0.0), sigma_m=0.05),
+        entered(),
+    ]
+    for second in range(1, seconds + 1):
+        readings.append(
+            Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(0.0, 0.0, 0.0))
+        )
+        dbm = -30.0 + float(chance.normal(0.0, 5.0))
+        readings.append(Rssi(t=float(second), a="ff1", b="other", dbm=round(dbm, 1)))
+    state = fused(readings)
+    problem = problem_of(state)
+    problem.rows.learn({name: LearnedNoise(products=0.6 * physics.NOISE_PRIOR) for name in state.sources})
+    heard, afar = slice(len(problem.rows.pairs)), problem.rows.sigma.copy()
+    x = problem.layout.start()
+    problem.rows.widen(x, problem.linearise(x).jacobian)
+    met_db, afar_db = (float((sigma[heard] ** -2).sum() ** -0.5) for sigma in (problem.rows.sigma, afar))
+    return met_db, afar_db
+
+
+def test_who_stands_on_a_breadcrumb_meets_it_once_however_often_he_hears_it() -> None:
+    for seconds in (60, 240):
+        met_db, afar_db = beside_db(seconds)
+        assert 3.0 < met_db < afar_db
 
 
 def test_who_ranges_once_a_second_is_asked_of_all_of_it_as_it_is() -> None:
