@@ -6,7 +6,8 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion.arcs import alike, fallen_back, look_aside
-from estimator.fusion.ledger import RANGE
+from estimator.fusion.ledger import RANGE, RSSI
+from estimator.fusion.nearness import look_around, off_line
 from estimator.fusion.rows import KIND, OUTLIERS, SHIFT, SIGMA, SPREAD, WIDTH, columns_of, linearise
 from estimator.graph.dense import Array, Indices
 from estimator.graph.filter_kernels import scatter
@@ -62,15 +63,15 @@ def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: i
     columns, jacobian, residual = columns_of(table), np.empty((m, WIDTH)), np.empty(m)
     ahead, forecast = np.empty((m, WIDTH)), np.empty(m)
     factor, unscale, predicted, good = np.zeros((n, n)), np.empty(n), np.empty(m), np.empty(m)
-    arcs = np.zeros(m)
+    wider = np.zeros(m)
     if not factorised(prior, factor, unscale):
         return Found(INDEFINITE, matrix, x, residual, predicted, good, False)
     linearise(table, columns, x, jacobian, residual)
     variances(columns, jacobian, factor, unscale, predicted)
     own = sigma**2
-    curved = widen(table, columns, jacobian, residual, factor, unscale, arcs)
+    curved = widen(table, columns, jacobian, residual, x, factor, unscale, wider)
     if curved:
-        sigma[:] = np.sqrt(own + arcs)
+        sigma[:] = np.sqrt(own + wider)
     cost, doubted = misfit(table, sigma, residual, x - start, prior, pull), False
     for _ in range(iterations):
         weighted = weigh(residual, sigma, predicted, outliers, shift, spread)
@@ -103,9 +104,9 @@ def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: i
             most = BENT * np.sqrt(sigma[r] ** 2 + predicted[r])
             rests = rests and abs(residual[r] - forecast[r]) < most
         if curved:
-            widen(table, columns, ahead, residual, factor, unscale, arcs)
-            rests = rests and bool((np.abs(own + arcs - sigma**2) <= SETTLED * sigma**2).all())
-            sigma[:] = np.sqrt(own + arcs)
+            widen(table, columns, ahead, residual, x, factor, unscale, wider)
+            rests = rests and bool((np.abs(own + wider - sigma**2) <= SETTLED * sigma**2).all())
+            sigma[:] = np.sqrt(own + wider)
             cost = misfit(table, sigma, residual, x - start, prior, pull)
         if rests:
             break
@@ -156,42 +157,52 @@ def widen(
     columns: Indices,
     jacobian: Array,
     residual: Array,
+    x: Array,
     factor: Array,
     unscale: Array,
-    arcs: Array,
+    wider: Array,
 ) -> bool:
-    """What lines of sight that may be turned add to the noise of ranges; see `arcs`.
+    """What is added to the noise of readings for the state leaves so much open; see `arcs` and `nearness`.
 
     Args:
         table: of m readings, those of one kind one after the other.
         columns: which numbers each depends on, m × 8.
         jacobian: its derivatives by them, m × 8.
         residual: z − h(x) of each, m.
+        x: the estimate, n.
         factor: of L, as `factorised` leaves it.
         unscale: the same.
-        arcs: takes the variances, m (m²); nil of what is no range, and of all where none is worth minding.
+        wider: takes the variances, m; nil of other kinds, and of a kind where none is worth minding.
 
     Returns:
         Whether any is.
     """
-    arcs[:] = 0.0
-    ranged = table[:, KIND] == RANGE
-    m = int(ranged.sum())
-    if m == 0:
-        return False
-    first = int(np.argmax(ranged))
-    own = slice(first, first + m)
-    aside, levers_m, turned = np.empty((m, WIDTH)), np.empty(m), np.empty(m)
-    look_aside(table[own], columns[own], jacobian[own], residual[own], aside, levers_m)
-    variances(columns[own], aside, factor, unscale, turned)
-    each, minded = levers_m**2 * fallen_back(turned), (BENT * table[own, SIGMA]) ** 2
-    if not (m * each > minded).any():
-        return False
-    each *= alike(table[own])
-    if not (each > minded).any():
-        return False
-    arcs[own] = each
-    return True
+    wider[:] = 0.0
+    found = False
+    for kind in (RANGE, RSSI):
+        among = table[:, KIND] == kind
+        m = int(among.sum())
+        if m == 0:
+            continue
+        first = int(np.argmax(among))
+        own = slice(first, first + m)
+        aside, scales, turned = np.empty((m, WIDTH)), np.empty(m), np.empty(m)
+        if kind == RANGE:
+            look_aside(table[own], columns[own], jacobian[own], residual[own], aside, scales)
+            variances(columns[own], aside, factor, unscale, turned)
+            each = scales**2 * fallen_back(turned)
+        else:
+            along, farther = np.empty((m, WIDTH)), np.empty(m)
+            look_around(columns[own], jacobian[own], x, aside, along, scales)
+            variances(columns[own], aside, factor, unscale, turned)
+            variances(columns[own], along, factor, unscale, farther)
+            each = scales**2 * off_line(turned, farther)
+        minded = (BENT * table[own, SIGMA]) ** 2
+        if (m * each > minded).any():
+            each *= alike(table[own])
+            if (each > minded).any():
+                wider[own], found = each, True
+    return found
 
 
 @njit(cache=True, error_model="numpy")

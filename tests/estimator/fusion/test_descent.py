@@ -108,6 +108,8 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
     ranged = table[:, KIND] == RANGE
     # Places of fixed ends are at random here: only ranges between both nodes share a line.
     alike = np.where(ranged & (table[:, B] >= 0.0), (ranged & (table[:, B] >= 0.0)).sum(), 1)
+    heard = table[:, KIND] == RSSI
+    heard_alike = np.where(heard & (table[:, B] >= 0.0), (heard & (table[:, B] >= 0.0)).sum(), 1)
 
     def dense(x: Array) -> tuple[Array, Array]:
         jacobian, residual = linearise_plainly(table, columns, x)
@@ -129,6 +131,20 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
         found = alike * lever**2 * (1.5 - 2.0 * np.exp(-0.5 * v) + 0.5 * np.exp(-2.0 * v))
         return found if (found > (BENT * own) ** 2).any() else np.zeros(len(table))
 
+    def logarithms(jacobian: Array, x: Array, information: Array) -> Array:
+        covariance, found = np.linalg.inv(information), np.zeros(len(table))
+        for r in np.flatnonzero(heard & (jacobian[:, 6] != 0.0)):
+            by_place, slope_db = jacobian[r, :3], 10.0 / np.log(10.0) * max(x[9], 0.5)
+            across = np.array([-by_place[1], by_place[0], 0.0]) / np.hypot(*by_place[:2])
+            aside, farther = np.zeros(N), np.zeros(N)
+            aside[:3], farther[:3] = across * np.linalg.norm(by_place) / slope_db, by_place / slope_db
+            if table[r, B] >= 0.0:
+                aside[3:6], farther[3:6] = -aside[:3], -farther[:3]
+            psi, rho = aside @ covariance @ aside, farther @ covariance @ farther
+            off = np.log(1.0 + 3.0**0.5 * psi) ** 2 / 4.0 + rho**2 / (1.0 + rho)
+            found[r] = heard_alike[r] * slope_db**2 * off
+        return found if (found > (BENT * own) ** 2).any() else np.zeros(len(table))
+
     def misfit(sigma: Array, residual: Array, moved: Array) -> float:
         good, bad = sigma**2, sigma**2 + spread**2
         from_good = np.log1p(-outliers) - 0.5 * (np.log(good) + residual**2 / good)
@@ -137,7 +153,8 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
 
     x, matrix = start, prior
     whole, residual = dense(x)
-    wider = arcs(linearise_plainly(table, columns, x)[0], residual, prior)
+    told = linearise_plainly(table, columns, x)[0]
+    wider = arcs(told, residual, prior) + logarithms(told, x, prior)
     curved, sigma = wider.any(), np.sqrt(own**2 + wider)
     predicted = np.einsum("mi,ij,mj->m", whole, np.linalg.inv(prior), whole)
     cost = misfit(sigma, residual, x - start)
@@ -160,7 +177,8 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
         rests = (np.abs(residual - forecast) < BENT * np.sqrt(sigma**2 + predicted)).all()
         if curved:
             was = sigma**2
-            wider = arcs(linearise_plainly(table, columns, x)[0], residual, matrix)
+            told = linearise_plainly(table, columns, x)[0]
+            wider = arcs(told, residual, matrix) + logarithms(told, x, matrix)
             sigma = np.sqrt(own**2 + wider)
             rests = rests and (np.abs(sigma**2 - was) <= SETTLED * was).all()
             cost = misfit(sigma, residual, x - start)

@@ -45,7 +45,7 @@ def test_nothing_stays_between_a_responder_and_a_surveyed_anchor() -> None:
 
 
 def beside_db(seconds: int) -> tuple[float, float]:
-    """What is all that a responder hears of a breadcrumb that he stands on, worth together (dB).
+    """What all that a responder hears of a breadcrumb that he stands on is worth together (dB).
 
     Returns:
         As an encounter; and had he not been so near.
