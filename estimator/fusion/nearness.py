@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from estimator.graph.dense import Array, Indices
+from estimator.measurements.rssi import DB_PER_NEPER
 
 LEAST_EXPONENT = 0.5
 """Of nothing that spreads: the free space has 2, a corridor 1.4."""
@@ -40,16 +41,14 @@ def look_around(
         level = np.hypot(east, north)
         if exponent < 0 or jacobian[r, 6] == 0.0 or level < NOWHERE:
             continue
-        slopes_db[r] = 10.0 / np.log(10.0) * max(x[exponent], LEAST_EXPONENT)
+        slopes_db[r] = DB_PER_NEPER * max(x[exponent], LEAST_EXPONENT)
         over = np.hypot(level, up) / slopes_db[r]
         for c in range(6):
             farther[r, c] = jacobian[r, c] / slopes_db[r]
         for start, sign in ((0, 1.0), (3, -1.0)):
             if columns[r, start] >= 0:
-                aside[r, start], aside[r, start + 1] = (
-                    -sign * north / level * over,
-                    sign * east / level * over,
-                )
+                aside[r, start] = -sign * north / level * over
+                aside[r, start + 1] = sign * east / level * over
 
 
 @njit(cache=True, error_model="numpy")

@@ -1,5 +1,6 @@
 """`rssi`: how strongly one radio heard another."""
 
+import math
 from typing import Annotated
 
 import numpy as np
@@ -29,12 +30,16 @@ ANTENNA_M = 0.3
 """A boot passes a breadcrumb at about this distance; the logarithm stays finite."""
 TOUCHING_M = 0.03
 """Antennas never coincide, nor are they nearer than this when one radio lies on the other."""
+DB_PER_NEPER = 10.0 / math.log(10.0)
+"""What a power of exponent 1 falls by with the natural logarithm of the distance."""
+BESIDE, NEARER = DB_PER_NEPER * math.log(ANTENNA_M), DB_PER_NEPER * math.log(ANTENNA_M / TOUCHING_M)
+"""What it falls by from 1 m to `ANTENNA_M`, and rises by from there to `TOUCHING_M` (dB)."""
 
 
 @njit(cache=True)
 def rssi_slope(squared_m2: float, exponent: float) -> float:
     """How a power grows with the distance, over the distance, at ‖a − b‖² (m²), in dB / m²."""
-    slope: float = -10.0 / np.log(10.0) * exponent / (squared_m2 + ANTENNA_M * ANTENNA_M)
+    slope: float = -DB_PER_NEPER * exponent / (squared_m2 + ANTENNA_M * ANTENNA_M)
     return slope
 
 
@@ -42,15 +47,13 @@ def rssi_slope(squared_m2: float, exponent: float) -> float:
 def rssi_at(heard_dbm: float, squared_m2: float, power_dbm: float, exponent: float) -> Along:
     """What the law predicts at ‖a − b‖² (m²) of a power that was heard; see `predict_rssi`."""
     # The natural logarithm takes half as long as the other one.
-    tens = 5.0 / np.log(10.0) * np.log(squared_m2 + ANTENNA_M * ANTENNA_M)
-    slope, beside = rssi_slope(squared_m2, exponent), 10.0 / np.log(10.0) * np.log(ANTENNA_M)
-    over = heard_dbm - (power_dbm - exponent * beside)
+    tens = 0.5 * DB_PER_NEPER * np.log(squared_m2 + ANTENNA_M * ANTENNA_M)
+    slope, over = rssi_slope(squared_m2, exponent), heard_dbm - (power_dbm - exponent * BESIDE)
     if over <= 0.0:
         return Along(power_dbm - exponent * tens, slope, 1.0, -tens)
-    nearer = 10.0 / np.log(10.0) * np.log(ANTENNA_M / TOUCHING_M)
-    if over <= exponent * nearer:
-        return Along(heard_dbm - exponent * (tens - beside), slope, 0.0, beside - tens)
-    return Along(power_dbm - exponent * (tens - nearer), slope, 1.0, nearer - tens)
+    if over <= exponent * NEARER:
+        return Along(heard_dbm - exponent * (tens - BESIDE), slope, 0.0, BESIDE - tens)
+    return Along(power_dbm - exponent * (tens - NEARER), slope, 1.0, NEARER - tens)
 
 
 @njit(cache=True)

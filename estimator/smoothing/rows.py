@@ -25,7 +25,7 @@ from estimator.smoothing.obstructed import excess
 from estimator.smoothing.partial import partial
 from estimator.smoothing.rarer import once_a_second
 
-EACH = ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike", "turns", "_told", "_alone")
+PER_ROW = ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike", "turns", "_told", "_alone")
 """What there is one of for each row."""
 
 
@@ -167,7 +167,7 @@ class Rows:
         pairs, singles, drops = chosen[:m], chosen[m : m + n], chosen[m + n :: 3]
         unsure = zip(self._unsure_m2, (pairs, pairs, singles, drops), strict=True)
         other, columns = copy(self), self.columns[chosen]
-        for name in EACH:
+        for name in PER_ROW:
             setattr(other, name, getattr(self, name)[chosen])
         other.columns = np.where(columns >= 0, numbers.column[columns], -1)
         other.pairs, other.singles, other.drops = self.pairs[pairs], self.singles[singles], self.drops[drops]
