@@ -145,8 +145,8 @@ def _warm_filter() -> None:
     table = np.full((1, FIELDS), 0.5)
     table[0, :2] = ONE, 0.0
     found = descend(table, graph.information.copy(), graph.vector, graph.reference, 1)
-    told, newest = (found.residual, found.predicted, found.good), np.array([NEW])
-    tally(table, *told, newest, np.zeros((1, 5)))
+    newest = np.array([NEW])
+    tally(table, found, newest, np.zeros((1, 6)))
     odd(table, found.good, newest, False)
     ends, marks = np.zeros((1, len(End._fields))), np.zeros((2, 4))
     offset(ends[0], marks, graph.reference, 0.0)

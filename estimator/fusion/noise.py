@@ -7,6 +7,7 @@ alike until an end has moved on. Taken for independent, they would make any esti
 import math
 
 import msgspec
+import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
@@ -22,6 +23,7 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
         products: sum of the products of their errors.
         seen: readings that the share of outliers is learned from.
         odd: how many of them were outliers.
+        t: until when it has been learned (s); None: it is assumed.
     """
 
     count: float = physics.NOISE_PRIOR
@@ -30,6 +32,7 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
     products: float = physics.NOISE_PRIOR * physics.SHARED_NOISE
     seen: float = 0.0
     odd: float = 0.0
+    t: float | None = None
 
     @property
     def factor(self) -> float:
@@ -49,20 +52,47 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
         return float((self.odd + physics.OUTLIER_PRIOR * usual) / (self.seen + physics.OUTLIER_PRIOR))
 
     def with_errors(
-        self, count: float, squares: float, pairs: float, products: float, seen: float
+        self,
+        count: float,
+        squares: float,
+        pairs: float,
+        products: float,
+        seen: float,
+        powers: float,
+        *,
+        t: float,
     ) -> "LearnedNoise":
-        """What is known after more readings."""
-        keep_seen = physics.NOISE_MEMORY / (physics.NOISE_MEMORY + seen)
-        keep = physics.NOISE_MEMORY / (physics.NOISE_MEMORY + count)
-        keep_pairs = physics.NOISE_MEMORY / (physics.NOISE_MEMORY + pairs)
-        return LearnedNoise(
-            keep * (self.count + count),
-            keep * (self.squares + squares),
-            keep_pairs * (self.pairs + pairs),
-            keep_pairs * (self.products + products),
-            keep_seen * (self.seen + seen),
-            keep_seen * (self.odd + seen - count),
+        """What is known after more readings.
+
+        Args:
+            count: how many good ones there are.
+            squares: sum of their squared errors.
+            pairs: how many of them follow another one on their link.
+            products: sum of the products of their errors.
+            seen: how many readings there are.
+            powers: how many of them are powers, not ranges.
+            t: until when (s).
+        """
+        gone_s = 0.0 if self.t is None else max(t - self.t, 0.0)
+        recent = math.exp(-gone_s / physics.POWER_NOISE_MEMORY_S) if powers else 0.0
+        kept, kept_pairs, kept_seen = (
+            max(recent, physics.NOISE_MEMORY / (physics.NOISE_MEMORY + more)) for more in (count, pairs, seen)
         )
+        return LearnedNoise(
+            kept * self.count + count,
+            kept * self.squares + squares,
+            kept_pairs * self.pairs + pairs,
+            kept_pairs * self.products + products,
+            kept_seen * self.seen + seen,
+            kept_seen * self.odd + seen - count,
+            t,
+        )
+
+
+@njit(cache=True)
+def near_dbm(power_dbm: float, exponent: float) -> float:
+    """The power expected at the edge of the near zone (dBm)."""
+    return float(power_dbm - 10.0 * exponent * np.log10(physics.NEAR_M))
 
 
 @njit(cache=True, error_model="numpy")

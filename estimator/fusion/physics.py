@@ -181,6 +181,9 @@ SHARED_S = 600.0
 FREE_WAY_MPS = 0.5
 NOISE_MEMORY = 300.0
 """How many readings back the noise of a technology is learned from."""
+POWER_NOISE_MEMORY_S = 60.0
+"""For how long at least powers tell it: what they scatter by is the place's, and a crew's radios measure so
+many in some seconds."""
 OUTLIER_PRIOR = 50.0
 """How many readings the usual share of outliers counts as."""
 NOISE_PRIOR = 20.0

@@ -5,9 +5,10 @@ from numba import njit
 
 from estimator.fusion import echoes, physics
 from estimator.fusion.descent import INDEFINITE, SOLVED, Found, descend
-from estimator.fusion.ledger import RANGE
+from estimator.fusion.ledger import RANGE, RSSI
 from estimator.fusion.links import ERROR, KEPT
-from estimator.fusion.rows import KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE
+from estimator.fusion.noise import near_dbm
+from estimator.fusion.rows import CONSTANT, EXTRA, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
@@ -57,12 +58,12 @@ def bend_m(graph: Kirchhoff, moved: Array) -> float:
 
 def _learn(state: FusionState, table: Array, found: Found) -> None:
     """M-step for the noise of each technology: what good readings are off, and how unsure that is itself."""
-    sums = np.zeros((len(state.sources), 5))
-    outliers = tally(table, found.residual, found.predicted, found.good, state.links.table, sums)
+    sums = np.zeros((len(state.sources), 6))
+    outliers = tally(table, found, state.links.table, sums)
     state.count("outlier", outliers)
     for source, told in zip(state.sources, sums.tolist(), strict=True):
         if told[4] > 0.0:
-            state.noise[source] = state.learned(source).with_errors(*told)
+            state.noise[source] = state.learned(source).with_errors(*told, t=state.newest_t)
 
 
 @njit(cache=True, error_model="numpy")
@@ -84,36 +85,57 @@ def odd(table: Array, good: Array, links: Array, doubted: bool) -> bool:
 
 
 @njit(cache=True, error_model="numpy")
-def tally(table: Array, residual: Array, predicted: Array, good: Array, links: Array, sums: Array) -> int:
+def tally(table: Array, found: Found, links: Array, sums: Array) -> int:
     """Sum up what readings tell of the noise of their technologies, and count the outliers among them.
 
     Args:
         table: of m readings.
-        residual: z − h(x) of each, m.
-        predicted: variance of each prediction by the state's covariance, m.
-        good: probability that each has the good noise, m.
+        found: what they have led to.
         links: the newest reading on each link, see `links`; its error is changed.
-        sums: takes count, squares, pairs, products and seen of each technology, as `LearnedNoise.with_errors`
-            does.
+        sums: takes count, squares, pairs, products, seen and powers of each technology, as
+            `LearnedNoise.with_errors` does.
     """
     outliers = 0
     for r in range(len(table)):
-        outliers += good[r] < SAME_PLACE
+        good, residual = found.good[r], found.residual[r]
+        outliers += good < SAME_PLACE
         source, link = int(table[r, SOURCE]), int(table[r, LINK])
         if source < 0:
             continue
+        if near(table[r], residual, found.x):
+            if link >= 0:
+                links[link, ERROR] = np.nan
+            continue
         nominal, variance = table[r, NOMINAL], table[r, SIGMA] ** 2
-        unsure = predicted[r] * variance / (predicted[r] + variance)
-        sums[source, 0] += good[r]
-        sums[source, 1] += good[r] * (residual[r] ** 2 + unsure) / nominal**2
+        unsure = found.predicted[r] * variance / (found.predicted[r] + variance)
+        sums[source, 0] += good
+        sums[source, 1] += good * (residual**2 + unsure) / nominal**2
         sums[source, 4] += 1.0
+        sums[source, 5] += table[r, KIND] == RSSI
         if link < 0:
             continue
         if table[r, OUTLIERS] == physics.ECHOES:
-            echoes.fit(links[link], good[r])
-        error = residual[r] / nominal
+            echoes.fit(links[link], good)
+        error = residual / nominal
         if links[link, KEPT] > SAME_PLACE and not np.isnan(links[link, ERROR]):
-            sums[source, 2] += good[r]
-            sums[source, 3] += good[r] * (error * links[link, ERROR] - unsure / nominal**2)
-        links[link, ERROR] = error if good[r] > SAME_PLACE else np.nan
+            sums[source, 2] += good
+            sums[source, 3] += good * (error * links[link, ERROR] - unsure / nominal**2)
+        links[link, ERROR] = error if good > SAME_PLACE else np.nan
     return outliers
+
+
+@njit(cache=True, error_model="numpy")
+def near(row: Array, residual: float, x: Array) -> bool:
+    """Whether a reading is of a power between radios that are thought to be near each other.
+
+    The direct path rules there: it tells nothing of how noisy radios are that are farther apart.
+
+    Args:
+        row: of the reading.
+        residual: z − h(x).
+        x: the estimate, n.
+    """
+    extra = int(row[EXTRA])
+    if row[KIND] != RSSI or extra < 0:
+        return False
+    return bool(row[VALUE] - residual >= near_dbm(x[extra] + row[CONSTANT], x[extra + 1]))

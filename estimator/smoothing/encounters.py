@@ -6,7 +6,6 @@ other.
 """
 
 import numpy as np
-from numba import njit
 
 from estimator.fusion import physics
 from estimator.graph.dense import Array
@@ -27,9 +26,3 @@ def candidates(t: Array, link: Array, value: Array) -> Array:
         t[order], link[order], value[order], physics.ENCOUNTER_S, physics.ENCOUNTER_READINGS
     )
     return found
-
-
-@njit(cache=True)
-def near_dbm(power_dbm: float, exponent: float) -> float:
-    """The power expected at the edge of the near zone (dBm)."""
-    return float(power_dbm - 10.0 * exponent * np.log10(physics.NEAR_M))

@@ -8,13 +8,12 @@ from numpy.typing import NDArray
 
 from estimator.fusion import physics
 from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE
-from estimator.fusion.noise import through_sigma
+from estimator.fusion.noise import near_dbm, through_sigma
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import bearing_at
 from estimator.measurements.range import range_at
 from estimator.measurements.rssi import rssi_at
-from estimator.smoothing.encounters import near_dbm
 from estimator.smoothing.ends import FIXED, UNIT, Table, faced, place_end, place_ends
 
 ANY = 14

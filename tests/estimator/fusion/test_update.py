@@ -3,15 +3,26 @@
 import numpy as np
 import pytest
 
+from estimator.fusion.descent import SOLVED, Found
+from estimator.fusion.ledger import RANGE, RSSI
 from estimator.fusion.links import ECHO_M, ECHO_ODDS, ERROR, KEPT, NEW
 from estimator.fusion.physics import ECHOES
-from estimator.fusion.rows import FIELDS, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE
+from estimator.fusion.rows import EXTRA, FIELDS, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
 from estimator.fusion.update import odd, tally
+from estimator.graph.dense import Array
+
+POWER_DBM, EXPONENT = -40.0, 2.0
+
+
+def found(residual: Array, predicted: Array, good: Array) -> Found:
+    """What readings have led to, of a state of one radio law."""
+    return Found(SOLVED, np.eye(2), np.array([POWER_DBM, EXPONENT]), residual, predicted, good, False)
 
 
 def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_link() -> None:
     """Two on one link whose ends stand still, one on a link without an error, one of no technology."""
     table = np.zeros((4, FIELDS))
+    table[:, KIND] = RANGE
     table[:, SOURCE], table[:, LINK] = [1, 1, 0, -1], [0, 0, 1, -1]
     table[:, NOMINAL], table[:, SIGMA] = 0.5, 0.4
     residual, predicted, good = (
@@ -19,18 +30,31 @@ def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_
         np.full(4, 0.04),
         np.array([0.9, 0.8, 0.2, 1.0]),
     )
-    links, sums = np.tile(NEW, (2, 1)), np.zeros((3, 5))
+    links, sums = np.tile(NEW, (2, 1)), np.zeros((3, 6))
     links[:, KEPT], links[:, ERROR] = 1.0, [1.5, np.nan]
-    tally(table, residual, predicted, good, links, sums)
+    tally(table, found(residual, predicted, good), links, sums)
     unsure = 0.04 * 0.16 / 0.2
     first, second = 0.3 / 0.5, -0.2 / 0.5
     squares = 0.9 * (0.3**2 + unsure) / 0.25 + 0.8 * (0.2**2 + unsure) / 0.25
     products = 0.9 * (first * 1.5 - unsure / 0.25) + 0.8 * (second * first - unsure / 0.25)
-    assert sums[1] == pytest.approx([1.7, squares, 1.7, products, 2.0])
-    assert sums[0] == pytest.approx([0.2, 0.2 * (1.0 + unsure) / 0.25, 0.0, 0.0, 1.0])
+    assert sums[1] == pytest.approx([1.7, squares, 1.7, products, 2.0, 0.0])
+    assert sums[0] == pytest.approx([0.2, 0.2 * (1.0 + unsure) / 0.25, 0.0, 0.0, 1.0, 0.0])
     assert (sums[2] == 0.0).all()
     assert links[0, ERROR] == pytest.approx(second)
     assert np.isnan(links[1, ERROR])
+
+
+def test_who_rest_side_by_side_tell_nothing_of_the_noise_of_radios_farther_apart() -> None:
+    """Of two powers the first is that of a radio a metre away, the second that of one at ten metres."""
+    table, links, sums = np.zeros((2, FIELDS)), np.tile(NEW, (2, 1)), np.zeros((1, 6))
+    table[:, KIND], table[:, SOURCE], table[:, LINK], table[:, EXTRA] = RSSI, 0, [0, 1], 0
+    table[:, NOMINAL], table[:, SIGMA] = 6.0, 6.0
+    expected_dbm, residual = np.array([POWER_DBM, POWER_DBM - 10.0 * EXPONENT]), np.array([0.5, 9.0])
+    table[:, VALUE] = expected_dbm + residual
+    tally(table, found(residual, np.zeros(2), np.ones(2)), links, sums)
+    assert sums[0] == pytest.approx([1.0, (9.0 / 6.0) ** 2, 0.0, 0.0, 1.0, 1.0])
+    assert np.isnan(links[0, ERROR])
+    assert links[1, ERROR] == pytest.approx(9.0 / 6.0)
 
 
 def test_only_a_reading_of_an_echo_tells_by_fitting_that_the_echo_has_ended() -> None:
@@ -39,10 +63,10 @@ def test_only_a_reading_of_an_echo_tells_by_fitting_that_the_echo_has_ended() ->
     links[0, ECHO_M], links[0, ECHO_ODDS] = 6.0, 0.1
     fits = np.zeros(1), np.zeros(1), np.full(1, 0.9)
     table[0, OUTLIERS] = 0.1
-    tally(table, *fits, links, np.zeros((1, 5)))
+    tally(table, found(*fits), links, np.zeros((1, 6)))
     assert links[0, ECHO_M] == 6.0
     table[0, OUTLIERS] = ECHOES
-    tally(table, *fits, links, np.zeros((1, 5)))
+    tally(table, found(*fits), links, np.zeros((1, 6)))
     assert links[0, ECHO_M] == 0.0
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from estimator.smoothing.encounters import candidates, near_dbm
+from estimator.smoothing.encounters import candidates
 
 
 def test_only_the_strongest_reading_of_a_pass_is_a_candidate() -> None:
@@ -20,8 +20,3 @@ def test_each_link_has_its_own_passes() -> None:
 
 def test_a_single_reading_is_no_pass() -> None:
     assert not candidates(np.array([3.0]), np.array([1.0]), np.array([-30.0])).any()
-
-
-def test_the_near_zone_ends_at_a_metre_and_a_half() -> None:
-    expected = -40.0 - 25.0 * np.log10(1.5)
-    assert np.isclose(near_dbm(-40.0, 2.5), expected)
