@@ -30,19 +30,27 @@ from estimator.inertial.loose import tell
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
-from estimator.smoothing.arranged import arrange, scattered, sigmas
-from estimator.smoothing.bent import add_bends
-from estimator.smoothing.chosen import choose
-from estimator.smoothing.ends import Nodes, Table, place_ends, stand
-from estimator.smoothing.learn import noise_scores
-from estimator.smoothing.linear import ANY, Readings, add_unsure, apart, jacobians, residuals, stretch
-from estimator.smoothing.moved import ask
-from estimator.smoothing.obstructed import excess
-from estimator.smoothing.rarer import once_a_second
-from estimator.smoothing.slips import gains, unsure
-from estimator.smoothing.turned import change_pairs, moved_from, turn_between, turning
-from estimator.smoothing.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
-from estimator.smoothing.ways import Laid, Way
+from estimator.smoothing.changes.moved import ask
+from estimator.smoothing.keyframes.ends import Nodes, Table, place_ends, stand
+from estimator.smoothing.keyframes.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
+from estimator.smoothing.keyframes.ways import Laid, Way
+from estimator.smoothing.learning.learn import noise_scores
+from estimator.smoothing.learning.slips import gains, unsure
+from estimator.smoothing.problem.turned import change_pairs, moved_from, turn_between, turning
+from estimator.smoothing.readings.arranged import arrange, scattered, sigmas
+from estimator.smoothing.readings.chosen import choose
+from estimator.smoothing.readings.curvature import add_bends
+from estimator.smoothing.readings.linear import (
+    ANY,
+    Readings,
+    add_unsure,
+    apart,
+    jacobians,
+    residuals,
+    stretch,
+)
+from estimator.smoothing.readings.obstructed import excess
+from estimator.smoothing.readings.rarer import once_a_second
 
 
 def warm_up() -> None:

@@ -37,8 +37,8 @@ def narrow_sigma(outliers: float, scatter: float = math.inf) -> float:
 
     The farther a range, the more walls it crosses, and each makes it longer: where many are clearly too
     long, the others are so too, about in proportion to their length. What walls make a range longer by
-    scatters as much (`smoothing.obstructed`): where the others hardly scatter, they are in sight, and the
-    many are echoes that say nothing of them.
+    scatters as much (`smoothing.readings.obstructed`): where the others hardly scatter, they are in sight,
+    and the many are echoes that say nothing of them.
 
     Args:
         outliers: share of its ranges that are clearly too long, 0 to 1.

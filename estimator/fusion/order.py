@@ -1,6 +1,7 @@
 """The canonical order of readings: the same set gives the same estimates, in whatever order it arrives."""
 
 import math
+from operator import attrgetter
 
 import msgspec
 
@@ -9,6 +10,8 @@ from estimator.inertial.samples import AnyFolded
 from estimator.measurements.node import Node
 
 _encode = msgspec.msgpack.Encoder().encode
+UNTIL_T = attrgetter("until_t")
+"""Until when a reading tells, for a search among readings in their order."""
 
 
 def place_of(reading: AnyFolded) -> tuple[float, int, bytes]:

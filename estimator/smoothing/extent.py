@@ -5,11 +5,11 @@ import numpy as np
 from estimator.fusion.prior import Key, Prior
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Indices
-from estimator.smoothing.layout import technology_key
-from estimator.smoothing.solve import Problem
-from estimator.smoothing.solved import Solved
-from estimator.smoothing.turned import turned
-from estimator.smoothing.walks import STATES
+from estimator.smoothing.keyframes.layout import technology_key
+from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.problem.turned import turned
 
 SPACING_S = 2.0
 FREE_SPACING_S = 1.0

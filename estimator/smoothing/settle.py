@@ -6,9 +6,9 @@ from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array, Indices
 from estimator.graph.kirchhoff import Kirchhoff, marginalised
 from estimator.graph.variable import Variable
-from estimator.smoothing.layout import Layout, technology_key
-from estimator.smoothing.solved import Solved
-from estimator.smoothing.walks import STATES
+from estimator.smoothing.keyframes.layout import Layout, technology_key
+from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.problem.solved import Solved
 
 NONE = np.zeros(0, dtype=np.intp)
 

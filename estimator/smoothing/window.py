@@ -16,8 +16,9 @@ from estimator.fusion.beginnings import decide
 from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
-from estimator.smoothing.branch import branch
-from estimator.smoothing.changed import changed_links
+from estimator.smoothing.changes.branch import branch
+from estimator.smoothing.changes.changed import changed_links
+from estimator.smoothing.changes.moved import moved_nodes
 from estimator.smoothing.extent import (
     LONGEST_S,
     SHORTEST_S,
@@ -28,20 +29,19 @@ from estimator.smoothing.extent import (
     trim,
     work,
 )
-from estimator.smoothing.flips import heard_by
-from estimator.smoothing.layout import Layout
-from estimator.smoothing.learn import learn
-from estimator.smoothing.likeliest import likeliest
-from estimator.smoothing.moved import moved_nodes
-from estimator.smoothing.otherwise import otherwise
-from estimator.smoothing.rows import Rows
+from estimator.smoothing.images.flips import heard_by
+from estimator.smoothing.images.likeliest import likeliest
+from estimator.smoothing.images.otherwise import otherwise
+from estimator.smoothing.images.solutions import SLACKS_M
+from estimator.smoothing.images.tried import SAME_RAD
+from estimator.smoothing.images.turns import reports_from, to_other_sides
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.learning.learn import learn
+from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.problem.turned import turned
+from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.settle import keep_keyframes, settle
-from estimator.smoothing.solutions import SLACKS_M
-from estimator.smoothing.solve import Problem
-from estimator.smoothing.solved import Solved
-from estimator.smoothing.tried import SAME_RAD
-from estimator.smoothing.turned import turned
-from estimator.smoothing.turns import reports_from, to_other_sides
 
 PERIOD_S = 8.0
 SOONEST_S = 3.0

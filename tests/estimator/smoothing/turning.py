@@ -7,9 +7,9 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.layout import Layout
-from estimator.smoothing.turned import turn
-from estimator.smoothing.walks import STATES
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.problem.turned import turn
 
 HEADING_SIGMA_RAD = 0.1
 BEACONS_M = {"b1": (5.0, 8.0), "b2": (-6.0, 12.0)}

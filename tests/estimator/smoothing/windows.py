@@ -11,15 +11,14 @@ from estimator.fusion.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
-from estimator.smoothing.chain import Chain
+from estimator.smoothing.chain.chain import Chain
 from estimator.smoothing.extent import spacing_s
-from estimator.smoothing.layout import Layout
-from estimator.smoothing.rows import Rows
-from estimator.smoothing.solve import Problem
-from estimator.smoothing.solved import Solved
-from estimator.smoothing.walks import STATES
-from estimator.trackers.base import TrackerSettings
-from estimator.trackers.batch import online_pass
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.readings.rows import Rows
+from estimator.smoothing.whole import first_pass
 
 
 def entered(east_m: float = 0.0, north_m: float = 0.0, node: str = "ff1") -> Node:
@@ -30,7 +29,7 @@ def entered(east_m: float = 0.0, north_m: float = 0.0, node: str = "ff1") -> Nod
 
 def fused(readings: Sequence[AnyReading]) -> FusionState:
     """What the online pass leaves of an incident."""
-    return online_pass(sorted(readings, key=lambda r: r.t), TrackerSettings())
+    return first_pass(sorted(readings, key=lambda r: r.t))
 
 
 def problem_of(state: FusionState, since_t: float | None = None, prior: Prior | None = None) -> Problem:

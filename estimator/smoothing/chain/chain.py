@@ -1,0 +1,173 @@
+"""Normal equations of a chain of keyframes with a border: block tridiagonal, and an arrow to what lasts.
+
+    | D0  E0ᵀ          B0 |
+    | E0  D1  E1ᵀ      B1 |        keyframes k, each n numbers: all moving nodes at that epoch
+    |     E1  D2  …    B2 |        border, s numbers: static nodes, technologies
+    | B0ᵀ B1ᵀ B2ᵀ …    C  |
+
+Walks that no direct reading couples meet in the border only. Each group of them is eliminated by itself, as
+narrow as it is (`Strand`); C is the sum of what the groups say of the border.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from estimator.graph.dense import Array, factorise, inverse, mended, solve
+from estimator.graph.scatter import add_part
+from estimator.smoothing.chain.groups import Group
+from estimator.smoothing.chain.strand import Strand
+
+NOTHING = factorise(np.zeros((0, 0)))
+
+
+class Remainder(NamedTuple):
+    """What the keyframes before one say of it and of the border: a Kirchhoff matrix and its vector.
+
+    Attributes:
+        matrix: (n + s) × (n + s), the keyframe first.
+        vector: n + s.
+    """
+
+    matrix: Array
+    vector: Array
+
+
+class Chain:
+    """Normal matrix and gradient of a chain, to be filled and then solved once.
+
+    Attributes:
+        strands: the chain of each group; of the last one there is only the border.
+        width: n.
+        lasting: s.
+        promised: after `solve`: half the product of the gradient and the step, what a parabola gains by it.
+    """
+
+    def __init__(self, length: int, width: int, groups: Sequence[Group]) -> None:
+        self.strands = [Strand(length, group) for group in groups]
+        self.width = width
+        self.lasting = len(groups[-1].lasting)
+        self.promised = 0.0
+        self._length = length
+        self._cholesky = NOTHING
+
+    def damp(self, damping: float) -> None:
+        """Raise the diagonal by a share of itself (Marquardt): a shorter step, and more along the slope."""
+        if damping > 0.0:
+            for strand in self.strands:
+                strand.damp(damping)
+
+    def slope(self) -> Array:
+        """The gradient, flat: keyframes, then the border."""
+        keyframes = np.zeros((self._length, self.width))
+        for strand in self.strands:
+            keyframes[:, strand.group.columns] = strand.gradient
+        return np.concatenate([keyframes.ravel(), self._corner()[1]])
+
+    def _corner(self) -> tuple[Array, Array]:
+        """C, s × s, and the border's gradient, s."""
+        *moving, rest = self.strands  # the last one has all of the border
+        corner, gradient = rest.corner.copy(), rest.corner_gradient.copy()
+        for strand in moving:
+            add_part(strand.group.lasting, strand.corner, strand.corner_gradient, corner, gradient)
+        return corner, gradient
+
+    def remainder(self, keyframe: int) -> Remainder:
+        """Eliminate what lies before a keyframe: what is left of it on that keyframe and the border.
+
+        Args:
+            keyframe: not before one asked for earlier.
+
+        Raises:
+            ValueError: the matrix is not finite, or far from positive definite.
+        """
+        size = self.width + self.lasting
+        matrix, vector = np.zeros((size, size)), np.zeros(size)
+        for strand in self.strands:
+            strand.eliminate(keyframe)
+            own, rest = strand.group.columns, self.width + strand.group.lasting
+            matrix[own[:, None], own] = strand.diagonal[keyframe]
+            matrix[own[:, None], rest] = strand.border[keyframe]
+            matrix[rest[:, None], own] = strand.border[keyframe].T
+            vector[own] = strand.gradient[keyframe]
+        matrix[self.width :, self.width :], vector[self.width :] = self._corner()
+        return Remainder(0.5 * (matrix + matrix.T), vector)
+
+    def reduce(self, mend: bool = True) -> Array:
+        """Eliminate all keyframes and factorise what is left of the border: all that `covariances` needs.
+
+        Args:
+            mend: whether what is not positive definite is for rounding to answer for.
+
+        Returns:
+            What is left of the border's gradient, s.
+
+        Raises:
+            ValueError: the matrix is not finite, or far from positive definite.
+        """
+        for strand in self.strands:
+            strand.eliminate(self._length, mend)
+        corner, gradient = self._corner()
+        try:
+            self._cholesky = factorise(corner)
+        except ValueError:
+            if not mend:
+                raise
+            self._cholesky = factorise(mended(corner))
+        return gradient
+
+    def solve(self, mend: bool = True) -> tuple[Array, Array]:
+        """The step of all keyframes, k × n, and of the border, s; the arrays are used up.
+
+        Args:
+            mend: whether what is not positive definite is for rounding to answer for.
+
+        Raises:
+            ValueError: the matrix is not finite, or far from positive definite.
+        """
+        gradient = self.reduce(mend)
+        fixed = solve(self._cholesky, gradient)
+        self.promised = 0.5 * (float(gradient @ fixed) + sum(strand.eased for strand in self.strands))
+        steps = np.zeros((self._length, self.width))
+        for strand in self.strands:
+            steps[:, strand.group.columns] = strand.substitute(fixed[strand.group.lasting])
+        return steps, fixed
+
+    def response(self, right: Array, corner: Array) -> tuple[Array, Array]:
+        """L⁻¹ of several right sides at once, after `solve`: how everything moves where a current is put in.
+
+        Args:
+            right: of the keyframes, k × n × c.
+            corner: of the border, s × c.
+        """
+        carried, rest = [], corner.copy()
+        for strand in self.strands:
+            y, own = right[:, strand.group.columns], np.zeros((len(strand.group.lasting), corner.shape[1]))
+            strand.forth(y, own)
+            rest[strand.group.lasting] += own
+            carried.append(y)
+        fixed: Array = inverse(self._cholesky) @ rest
+        found = np.zeros(right.shape)
+        for strand, y in zip(self.strands, carried, strict=True):
+            strand.back(y, fixed[strand.group.lasting])
+            found[:, strand.group.columns] = y
+        return found, fixed
+
+    def covariances(self) -> tuple[Array, Array, Array]:
+        """After `reduce` or `solve`: covariances of the walks and of the border.
+
+        Returns:
+            Of each walk at each keyframe, k × walks × b × b; of each with itself at the next keyframe,
+            (k − 1) × walks × b × b; of the border, s × s.
+        """
+        border = inverse(self._cholesky)
+        walks = sum(len(strand.group.walks) for strand in self.strands)
+        size = self.width // max(walks, 1)
+        found = np.zeros((self._length, walks, size, size))
+        ahead = np.zeros((max(self._length - 1, 0), walks, size, size))
+        for strand in self.strands:
+            own, lasting = strand.group.walks, strand.group.lasting
+            if len(own):
+                found[:, own], ahead[:, own] = strand.covariances(border[np.ix_(lasting, lasting)])
+        return found, ahead, border

@@ -1,0 +1,141 @@
+"""The chain of one group of walks, with what it touches of the border.
+
+Elimination along it is operation 3 of paper A (eq. 17), keyframe after keyframe; what stays at its end is a
+Kirchhoff matrix of its part of the border. Cost grows with the length of the chain, not with its cube.
+"""
+
+import numpy as np
+
+from estimator.graph.dense import Array, mended
+from estimator.graph.kernels import Integers, eliminate, selected_inverse, substitute, take_off
+from estimator.graph.scatter import scatter_rows
+from estimator.smoothing.chain.groups import Group, Placed
+
+
+class Strand:
+    """Normal matrix and gradient of a group, to be filled and then eliminated once.
+
+    Attributes:
+        group: its walks and its part of the border.
+        diagonal: D, k × n × n.
+        link: E, keyframe j + 1 by keyframe j, (k − 1) × blocks × b × b: a node's next step depends on no
+            other's, so there are only blocks along its diagonal.
+        wide: B and the gradient of the keyframes beside it, k × n × (s + 1).
+        corner: C, s × s.
+        corner_gradient: of the border, s.
+        eased: gᵀ D⁻¹ g of the keyframes eliminated so far, as each one's was by then.
+    """
+
+    def __init__(self, length: int, group: Group) -> None:
+        self.group = group
+        width, border, blocks = len(group.columns), len(group.lasting), len(group.walks)
+        size = width // max(blocks, 1)
+        self.diagonal: Array = np.zeros((length, width, width))
+        self.link: Array = np.zeros((max(length - 1, 0), blocks, size, size))
+        self.wide: Array = np.zeros((length, width, border + 1))
+        self.corner: Array = np.zeros((border, border))
+        self.corner_gradient: Array = np.zeros(border)
+        self.eased = 0.0
+        self._done = 0
+
+    @property
+    def border(self) -> Array:
+        """B, k × n × s."""
+        return self.wide[:, :, :-1]
+
+    @property
+    def gradient(self) -> Array:
+        """Of the keyframes, k × n."""
+        return self.wide[:, :, -1]
+
+    def add(
+        self, placed: Placed, chosen: Integers, jacobian: Array, information: Array, residual: Array
+    ) -> None:
+        """Add some of m rows.
+
+        Args:
+            placed: the rows.
+            chosen: which of them; they are the group's.
+            jacobian: derivatives, m × c.
+            information: P⁻¹, m.
+            residual: z − h(x), m.
+        """
+        if len(chosen):
+            blocks = self.diagonal, self.wide, self.corner, self.corner_gradient
+            scatter_rows(chosen, placed.slab, placed.columns, jacobian, information, residual, *blocks)
+
+    def damp(self, damping: float) -> None:
+        """Raise the diagonal by a share of itself (Marquardt)."""
+        numbers, rest = range(self.diagonal.shape[1]), range(len(self.corner))
+        self.diagonal[:, numbers, numbers] *= 1.0 + damping
+        self.corner[rest, rest] *= 1.0 + damping
+
+    def eliminate(self, until: int, mend: bool = True) -> None:
+        """Eliminate the keyframes before one: the corner keeps what they say of the border.
+
+        Args:
+            until: not before one asked for earlier.
+            mend: whether what is not positive definite is for rounding to answer for.
+
+        Raises:
+            ValueError: the matrix is not finite, or far from positive definite.
+        """
+        if until <= self._done or not len(self.group.walks):
+            return
+        at, mended_at = self._done, -1
+        while at < until:
+            at = eliminate(at, until, self.diagonal, self.link, self.wide)
+            if at < until:
+                if not np.isfinite(self.diagonal[at]).all():
+                    raise ValueError("the normal equations of the incident are not finite")
+                if not mend or at == mended_at:
+                    raise ValueError("the normal equations of the incident are not positive definite")
+                self.diagonal[at] = mended(self.diagonal[at])
+                mended_at = at
+        self.eased += take_off(self._done, until, self.wide, self.corner, self.corner_gradient)
+        self._done = until
+
+    def substitute(self, fixed: Array) -> Array:
+        """Steps of the keyframes, k × n, for a step of its part of the border, s."""
+        steps = np.zeros(self.gradient.shape)
+        if steps.size:
+            substitute(self.diagonal, self.link, self.wide, fixed, steps)
+        return steps
+
+    def forth(self, y: Array, rest: Array) -> None:
+        """Carry right sides to its end: `y` of the keyframes, k × n × c, and `rest` of the border, s × c."""
+        length, width, count = y.shape
+        blocks, size = self.link.shape[1:3]
+        for j in range(length if width else 0):
+            y[j] = self.diagonal[j] @ y[j]
+            rest -= self.border[j].T @ y[j]
+            if j < length - 1:
+                back = (self.diagonal[j].T @ y[j]).reshape(blocks, size, count)
+                y[j + 1] -= (self.link[j] @ back).reshape(width, count)
+
+    def back(self, y: Array, fixed: Array) -> None:
+        """Answers in the place of what `forth` left in `y`, for those of the border, s × c."""
+        length, width, count = y.shape
+        blocks, size = self.link.shape[1:3]
+        for j in range(length - 1 if width else -1, -1, -1):
+            ahead = y[j] - self.border[j] @ fixed
+            if j < length - 1:
+                after = self.link[j].transpose(0, 2, 1) @ y[j + 1].reshape(blocks, size, count)
+                ahead -= self.diagonal[j] @ after.reshape(width, count)
+            y[j] = self.diagonal[j].T @ ahead
+
+    def covariances(self, border: Array) -> tuple[Array, Array]:
+        """Of each walk at each keyframe, k × walks × b × b, and with itself at the next one.
+
+        The selected inverse, from the end back to the start: only what the keyframe before and the border
+        need is ever formed.
+
+        Args:
+            border: covariance of its part of the border, s × s.
+        """
+        length, blocks, size, _ = len(self.diagonal), *self.link.shape[1:]
+        found = np.zeros((length, blocks, size, size))
+        ahead = np.zeros((max(length - 1, 0), blocks, size, size))
+        if blocks:
+            selected_inverse(self.diagonal, self.link, self.wide, border, found, ahead)
+        return found, ahead

@@ -1,0 +1,1 @@
+"""Who may be elsewhere: images of ways that readings do not tell apart, tried and told."""

@@ -1,0 +1,115 @@
+"""The solutions of a window that images of somebody's way lead to.
+
+Most images lead back to where he was: first those who would go there are solved by themselves, with all the
+others held where they are, which costs little, and the window as a whole only where that has led elsewhere.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+
+from estimator.fusion.images import Image
+from estimator.smoothing.images.earlier import CLEARER, ITERATIONS
+from estimator.smoothing.images.flips import Flip
+from estimator.smoothing.images.parts import Parts
+from estimator.smoothing.images.tried import Asked, Begun, Led, Tried
+from estimator.smoothing.problem.solved import Solved
+
+SOON = 4
+"""Iterations after which an image is given up that is hopeless."""
+HOPELESS, HELD = 50.0, 150.0
+"""What an image costs more, in log likelihood, that is given up; and with all others held where they are."""
+SLACKS_M = (1.0, 0.3, 0.1)
+"""How far off an estimate may be at first whose way nobody has gone: with a unit turned, or others along."""
+
+
+def solutions(asked: Asked, parts: Parts, solved: Solved, begun: Iterable[Begun], most: int) -> list[Tried]:
+    """The solutions that images of a way lead to, that which is to be shown first.
+
+    Args:
+        asked: of whom.
+        parts: of the window, with all others where they are in the solution.
+        solved: the solution of which they are images.
+        begun: where each of them begins, with all others where they are in the solution.
+        most: so many of them are solved as a whole.
+    """
+    found, tried = [Tried(solved, Flip(0, Image()))], list[Begun]()
+    for start in begun:
+        if any(asked.same_start(start, other) for other in tried):
+            continue
+        tried.append(start)
+        led = _led(asked, parts, found, start)
+        if led is None:
+            continue
+        if most == 0:
+            break
+        most -= 1
+        alone = len(start.flip.along) + 1 == len(asked.layout.walks)
+        there = _solved(asked, found, led, alone)
+        if there is None:
+            continue
+        new = Tried(there, start.flip)
+        same = asked.among([one.led for one in found], new.led)
+        if same is None:
+            found.append(new)
+        elif there.cost < found[same].solved.cost - CLEARER:
+            found[same] = new._replace(flip=found[same].flip)
+    best = min(found, key=lambda one: one.solved.cost)
+    if best.solved.cost > found[0].solved.cost - CLEARER:
+        best = found[0]
+    return [best, *(one for one in found if one is not best)]
+
+
+def _led(asked: Asked, parts: Parts, found: Sequence[Tried], start: Begun) -> Begun | None:
+    """Where an image leads to with all others held where they are; None: to no solution that is not known.
+
+    Two headings part soon, or they are one: first the beginning of a way is asked alone.
+    """
+    layout, moving = asked.layout, {asked.of, *(i for i, _ in start.flip.along)}
+    slacks, last = _slacks(start.flip), layout.length - 1
+    led = Led(start, math.inf)
+    for until in parts.stages(start.flip):
+        if until == last and len(moving) == len(layout.walks):
+            break
+        part = parts.of(moving, until)
+        try:
+            x = part.led(led.to.x, slacks, len(slacks) + SOON)
+        except ValueError:
+            # It hangs in the air there.
+            return None
+        led = Led(start._replace(x=x), part.more(x))
+        if led.cost > HELD:
+            return None
+        known = [Led(one.begun, part.more(one.solved.x)) for one in found]
+        same = asked._replace(part=part).among(known, led)
+        if same is None:
+            continue
+        # A beginning that is the same goes on the same way: what it gains by itself is no gain.
+        clearer = until == last and led.cost < known[same].cost - CLEARER
+        if not clearer and (until == last or asked.returned(known[same].to, start, led.to)):
+            return None
+    return led.to
+
+
+def _solved(asked: Asked, found: Sequence[Tried], start: Begun, alone: bool) -> Solved | None:
+    """The solution from an image; None where there is none, or it is hopeless.
+
+    Args:
+        asked: of whom.
+        found: the solutions that are known.
+        start: where to begin.
+        alone: nobody is held: it has led nowhere yet.
+    """
+    problem, slacks = asked.problem, _slacks(start.flip) if alone else ()
+    try:
+        there = problem.solve(start.x, slacks, len(slacks) + SOON)
+        if there.cost > found[0].solved.cost + HOPELESS:
+            return None
+        return there if there.rests else problem.solve(there.x, iterations=ITERATIONS)
+    except ValueError:
+        # It hangs in the air there.
+        return None
+
+
+def _slacks(flip: Flip) -> tuple[float, ...]:
+    """What others, or what a unit faces, have been turned by is hardly more than a guess."""
+    return SLACKS_M if flip.along or flip.image.turned_rad != 0.0 else ()

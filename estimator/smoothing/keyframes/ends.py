@@ -1,0 +1,286 @@
+"""Where the ends of readings are, for any estimate: keyframes with what was walked since, or what stands."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from estimator.graph.dense import Array
+from estimator.graph.kernels import Integers
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.keyframes.walks import STATES, lead
+from estimator.smoothing.keyframes.ways import Laid
+
+FIXED, STANDING, UNIT, FREE, UNPLACED = range(5)
+
+
+class Nodes(NamedTuple):
+    """What each node of the ledger is in a window, by its number.
+
+    Attributes:
+        kind: one of those above, n.
+        walk: which of the window's walks, n; −1: none.
+        column: first of its three columns in the border, n; −1: none.
+        fixed_m: where it is, if it is fixed, n × 3 (m).
+    """
+
+    kind: Integers
+    walk: Integers
+    column: Integers
+    fixed_m: Array
+
+
+def nodes_of(layout: Layout) -> Nodes:
+    """What each node is in the window."""
+    count = len(layout.state.owners) + 1
+    found = Nodes(
+        np.full(count, UNPLACED),
+        np.full(count, -1, dtype=np.int64),
+        np.full(count, -1, dtype=np.int64),
+        np.zeros((count, 3)),
+    )
+    for node in layout.state.nodes.values():
+        if node.place_m is not None and node.role == "base":
+            found.kind[node.index], found.fixed_m[node.index] = FIXED, node.place_m
+    for number, start in layout.stands.items():
+        found.kind[number], found.column[number] = STANDING, start
+    for i, walk in enumerate(layout.walks):
+        found.kind[walk.number], found.walk[walk.number] = FREE if walk.way is None else UNIT, i
+    return found
+
+
+class Table(NamedTuple):
+    """m ends of readings as numbers.
+
+    Attributes:
+        kind: what node each is of, m.
+        at: where its numbers are in the flat unknowns, m × 6; 0 where there is none.
+        fixed_m: where it is, if it is fixed, m × 3 (m).
+        delta_m: displacement since its keyframe, in the unit's frame, m × 3 (m).
+        moment: its first moment, m × 3 (m s).
+        duration_s: time since its keyframe, m (s).
+    """
+
+    kind: Integers
+    at: Integers
+    fixed_m: Array
+    delta_m: Array
+    moment: Array
+    duration_s: Array
+
+
+class Places(NamedTuple):
+    """Where m ends are.
+
+    Attributes:
+        place: positions, m × 3 (m); their derivatives by the first three columns are 1, if there are any.
+        turned: derivatives by the last three columns, m × 3 × 3.
+    """
+
+    place: Array
+    turned: Array
+
+
+@njit(cache=True)
+def faced(x: Array, ends: Table, others: Table) -> Array:
+    """An estimate's numbers, and of the headings of ends their cosines and sines, × 3.
+
+    Many readings are made soon after the same keyframe: each angle is asked once.
+
+    Args:
+        x: the estimate, flat.
+        ends: ends of readings.
+        others: other ones.
+    """
+    found = np.full((len(x), 3), np.nan)
+    for i in range(len(x)):
+        found[i, 0] = x[i]
+    for kinds, at in ((ends.kind, ends.at), (others.kind, others.at)):
+        for i in range(len(kinds)):
+            heading = at[i, 3]
+            if kinds[i] == UNIT and np.isnan(found[heading, 1]):
+                found[heading, 1], found[heading, 2] = np.cos(x[heading]), np.sin(x[heading])
+    return found
+
+
+@njit(cache=True, forceinline=True)
+def place_end(ends: Table, i: int, x: Array, place: Array, turned: Array) -> None:
+    """Where one end is at an estimate.
+
+    Put where it is called: a call would count each of its arrays, which takes longer than all of the rest.
+
+    Args:
+        ends: the table that it is in.
+        i: its row.
+        x: the estimate, see `faced`.
+        place: takes its position, 3 (m).
+        turned: takes the derivatives by the last three columns, 3 × 3; zeros before.
+    """
+    kind, at = ends.kind[i], ends.at[i]
+    for c in range(3):
+        place[c] = x[at[c], 0] if kind in (STANDING, UNIT, FREE) else ends.fixed_m[i, c]
+    if kind == UNIT:
+        cosine, sine, bias, scale = x[at[3], 1], x[at[3], 2], x[at[4], 0], 1.0 + x[at[5], 0]
+        led = lead(cosine, sine, bias, scale, ends.delta_m[i], ends.moment[i])
+        place[0] += led.east
+        place[1] += led.north
+        place[2] += led.up
+        turned[0, 0], turned[1, 0] = led.by_heading_e, led.by_heading_n
+        turned[0, 1], turned[1, 1] = led.by_bias_e, led.by_bias_n
+        turned[0, 2], turned[1, 2] = led.by_scale_e, led.by_scale_n
+    elif kind == FREE:
+        for c in range(3):
+            place[c] += x[at[3 + c], 0] * ends.duration_s[i]
+            turned[c, c] = ends.duration_s[i]
+
+
+@njit(cache=True)
+def place_ends(ends: Table, x: Array) -> Places:
+    """Where m ends are at an estimate x, flat."""
+    m, numbers = len(ends.kind), faced(x, ends, ends)
+    place, turned = np.empty((m, 3)), np.zeros((m, 3, 3))
+    for i in range(m):
+        place_end(ends, i, numbers, place[i], turned[i])
+    return Places(place, turned)
+
+
+class Stood(NamedTuple):
+    """Between which numbers m ends of readings are; see `Ends`.
+
+    Attributes:
+        kind: what node each is of, m.
+        slab: keyframe of each, m.
+        columns: its columns, m × 6.
+        flat: where they are in the flat unknowns, m × 6; 0 where there is none.
+        fixed_m: where it is, if it is fixed, m × 3 (m).
+        since_t: epoch of its keyframe, if it moves, m (s).
+        usable: m.
+    """
+
+    kind: Integers
+    slab: Integers
+    columns: Integers
+    flat: Integers
+    fixed_m: Array
+    since_t: Array
+    usable: NDArray[np.bool_]
+
+
+@njit(cache=True)
+def stand(
+    nodes: Nodes,
+    numbers: Integers,
+    t: Array,
+    nearest: NDArray[np.bool_],
+    grid: Array,
+    times: Array,
+    lives: Integers,
+) -> Stood:
+    """Where ends of readings belong in the unknowns of a window.
+
+    Args:
+        nodes: what each node is.
+        numbers: the node of each end, m.
+        t: epochs, m (s).
+        nearest: of a moving node, the nearest keyframe; else the one before, m.
+        grid: epochs of the keyframes, k (s).
+        times: those of each walk, k × walks (s).
+        lives: first and last keyframe of each walk, walks × 2.
+    """
+    m, length, width = len(numbers), len(grid), STATES * len(lives)
+    kind, slab, since = np.empty(m, dtype=np.int64), np.zeros(m, dtype=np.int64), t.copy()
+    columns, flat = np.full((m, STATES), -1), np.zeros((m, STATES), dtype=np.int64)
+    fixed, usable = np.zeros((m, 3)), np.empty(m, dtype=np.bool_)
+    kinds, walks, starts, places = nodes.kind, nodes.walk, nodes.column, nodes.fixed_m
+    for i in range(m):
+        number = numbers[i]
+        kind[i], walk = kinds[number], walks[number]
+        usable[i] = kind[i] != UNPLACED
+        if kind[i] == FIXED:
+            fixed[i] = places[number]
+        elif kind[i] == STANDING:
+            for c in range(3):
+                columns[i, c] = width + starts[number] + c
+                flat[i, c] = length * width + starts[number] + c
+        elif usable[i]:
+            first, last = lives[walk, 0], lives[walk, 1]
+            at = np.searchsorted(grid, t[i], side="right") - 1
+            around = min(max(at, 0), length - 2)
+            if nearest[i] and t[i] - grid[around] > grid[around + 1] - t[i]:
+                at = around + 1
+            at = min(max(at, first), last)
+            usable[i] = t[i] >= times[first, walk] - 1e-6
+            slab[i], since[i] = at, times[at, walk]
+            for c in range(STATES):
+                columns[i, c] = STATES * walk + c
+                flat[i, c] = at * width + columns[i, c]
+    return Stood(kind, slab, columns, flat, fixed, since, usable)
+
+
+class Ends:
+    """m ends of readings.
+
+    Attributes:
+        stood: between which numbers of the window they are.
+        unsure_m2: variances that a unit's own noise adds since its keyframe, m × 3 (m²).
+        table: what its place follows from.
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        numbers: Integers,
+        t: Array,
+        nearest: NDArray[np.bool_],
+        nodes: Nodes | None = None,
+    ) -> None:
+        m, numbers, t = len(numbers), np.ascontiguousarray(numbers), np.ascontiguousarray(t)
+        known = nodes_of(layout) if nodes is None else nodes
+        stood = stand(known, numbers, t, nearest, layout.grid, layout.times, layout.spans)
+        self.stood = stood
+        laid = Laid(np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)))
+        for walk in layout.walks if m else ():
+            if walk.way is not None:
+                walk.way.lay_out(walk.number, numbers, stood.since_t, t, laid)
+        delta_m, moment, self.unsure_m2 = laid
+        self.table = Table(stood.kind, stood.flat, stood.fixed_m, delta_m, moment, t - stood.since_t)
+
+    @property
+    def slab(self) -> Integers:
+        """Keyframe of each, m; 0 where it stands."""
+        return self.stood.slab
+
+    @property
+    def columns(self) -> Integers:
+        """Its six columns, m × 6: of the keyframe, or of the border counted after it; −1: none."""
+        return self.stood.columns
+
+    @property
+    def usable(self) -> NDArray[np.bool_]:
+        """Whether each has a place in the window at its epoch, m."""
+        return self.stood.usable
+
+    def take(self, chosen: NDArray[np.bool_]) -> None:
+        """Keep only some of the ends.
+
+        Args:
+            chosen: which, m.
+        """
+        if chosen.all():
+            return
+        stood = self.stood
+        self.stood = Stood(
+            stood.kind[chosen],
+            stood.slab[chosen],
+            stood.columns[chosen],
+            stood.flat[chosen],
+            stood.fixed_m[chosen],
+            stood.since_t[chosen],
+            stood.usable[chosen],
+        )
+        kind, at, fixed_m, delta_m, moment, duration_s = self.table
+        self.table = Table(
+            kind[chosen], at[chosen], fixed_m[chosen], delta_m[chosen], moment[chosen], duration_s[chosen]
+        )
+        self.unsure_m2 = self.unsure_m2[chosen]

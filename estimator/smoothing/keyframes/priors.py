@@ -1,0 +1,83 @@
+"""What is known beforehand of everything that enters inside a window."""
+
+from collections.abc import Collection
+from typing import NamedTuple
+
+import numpy as np
+
+from estimator.fusion import physics
+from estimator.fusion.calibration import bias_sigma_m, scale_sigma
+from estimator.fusion.prior import Key
+from estimator.graph.dense import Array, Indices
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.keyframes.walks import PLACES, STATES
+
+
+class Priors(NamedTuple):
+    """Independent priors of single numbers.
+
+    Attributes:
+        at: their flat columns, n.
+        mean: n.
+        information: one over their variances, n.
+    """
+
+    at: Indices
+    mean: Array
+    information: Array
+
+
+def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
+    """Priors of what no earlier window knows: how nodes entered, what a unit and a technology usually are.
+
+    Args:
+        layout: of the window.
+        known: the blocks that the window's prior tells of already.
+    """
+    state = layout.state
+    at: list[int] = []
+    mean: list[float] = []
+    known_by: list[float] = []
+    begins = state.ledger.table("begins")
+    for i, walk in enumerate(layout.walks):
+        before = ("free", walk.number) in known
+        if ("walk", walk.number) in known or (before and walk.way is None):
+            continue
+        rows = begins[begins[:, 1] == walk.number]
+        start = walk.first * layout.width + STATES * i
+        entry, role = rows[0], "uav" if rows[0][3] else "responder"
+        if not before:
+            at += range(start, start + PLACES)
+            mean += entry[4:7].tolist()
+            known_by += (entry[7:10] ** -2.0).tolist()
+        at += range(start + PLACES, start + STATES)
+        if walk.way is None:
+            across, upwards = physics.SPEED_SIGMA_MPS[role]
+            mean += [0.0, 0.0, 0.0]
+            known_by += [across**-2, across**-2, upwards**-2]
+        else:
+            unit = rows[rows[:, 2] == 1.0][-1]
+            mean += [float(unit[10]), 0.0, 0.0]
+            bias = state.bias_sigma_radps(walk.node)
+            known_by += [float(unit[11]) ** -2, bias**-2, state.scale_sigma(walk.node) ** -2]
+    size = layout.length * layout.width
+    for row in state.ledger.table("stands"):
+        number = int(row[1])
+        if ("stand", number) not in known:
+            start = size + layout.stands[number]
+            at += range(start, start + 3)
+            mean += row[2:5].tolist()
+            known_by += (row[5:8] ** -2.0).tolist()
+    for key, start in layout.technologies.items():
+        if key in known:
+            continue
+        at += [size + start, size + start + 1]
+        if key[0] == "range":
+            name = state.sources[key[1]]
+            mean += [0.0, 0.0]
+            scale = scale_sigma(state.uncalibrated.get(name, 0.0), state.narrow_sigma(name))
+            known_by += [scale**-2, bias_sigma_m(name) ** -2]
+        else:
+            mean += [physics.RSSI_POWER_DBM, physics.RSSI_EXPONENT]
+            known_by += [physics.RSSI_POWER_SIGMA_DB**-2, physics.RSSI_EXPONENT_SIGMA**-2]
+    return Priors(np.array(at, dtype=np.intp), np.array(mean), np.array(known_by, dtype=np.float64))

@@ -1,0 +1,220 @@
+"""The curvature of distances, added to the normal equations of a window: a loop over its pairs, compiled."""
+
+import numpy as np
+from numba import njit
+
+from estimator.fusion.ledger import RANGE, RSSI
+from estimator.graph.dense import Array
+from estimator.graph.kernels import Integers
+from estimator.measurements.range import range_slope
+from estimator.measurements.rssi import ANTENNA_M, rssi_slope
+from estimator.smoothing.keyframes.ends import faced, place_end
+from estimator.smoothing.keyframes.walks import PLACES, STATES
+from estimator.smoothing.readings.linear import Readings
+
+NOWHERE_M2 = 1e-6
+
+
+@njit(cache=True)
+def add_bends(
+    readings: Readings,
+    chosen: Integers,
+    x: Array,
+    information: Array,
+    residual: Array,
+    signed: bool,
+    slab: Integers,
+    columns: Integers,
+    diagonal: Array,
+    wide: Array,
+    corner: Array,
+) -> None:
+    """Add the curvature of distances, which Gauss-Newton leaves out: −P⁻¹ r ∂²h/∂x².
+
+    A distance that does not fit its reading bends across the line of sight, and a power that falls with its
+    logarithm bends along it as well, the other way. Without this a step goes several times too far wherever
+    radios are near each other. Upwards only what is positive is taken: on a level floor a height and its
+    mirror image fit alike, and between them the cost bends down. Along the floor negative curvature is needed
+    where a whole incident may still turn: it takes away what is positive there.
+
+    Args:
+        readings: of the window.
+        chosen: which pairs.
+        x: the estimate, flat.
+        information: P⁻¹ of each pair, m at least.
+        residual: z − h(x) as it is weighed, m at least.
+        signed: take negative curvature along the floor too; else only what is positive.
+        slab: keyframe of each pair, m at least.
+        columns: as `graph.scatter.scatter_rows` takes them, m at least.
+        diagonal: k × n × n, changed.
+        wide: border and gradient of each keyframe, k × n × (s + 1); the border is changed.
+        corner: s × s, changed.
+    """
+    a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
+    bend, both = np.empty((3, 3)), np.empty((3, 3))
+    pulled_a, pulled_b = np.empty((3, 3)), np.empty((3, 3))
+    width, corners = diagonal.shape[1], corner.reshape(1, *corner.shape)
+    # What is taken out of a tuple in the loop is counted in the loop.
+    ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
+    numbers = faced(x, ends_a, ends_b)
+    for i in chosen:
+        kind = kinds[i]
+        if kind > RSSI:
+            continue
+        by_a[:], by_b[:] = 0.0, 0.0
+        place_end(ends_a, i, numbers, a, by_a)
+        place_end(ends_b, i, numbers, b, by_b)
+        e, n, u = a[0] - b[0], a[1] - b[1], a[2] - b[2]
+        level, squared = e * e + n * n, e * e + n * n + u * u
+        if level < NOWHERE_M2:
+            continue
+        state = x[extra[i, 0 if kind == RANGE else 1]]
+        bent = range_slope(squared, state) if kind == RANGE else rssi_slope(squared, state)
+        across = -information[i] * residual[i] * bent
+        along = 0.0
+        if kind == RSSI:
+            along = across * (1.0 - 2.0 * squared / (squared + ANTENNA_M * ANTENNA_M))
+        upwards = max(across, 0.0)
+        if not signed:
+            across, along = upwards, max(along, 0.0)
+        if across == 0.0 and upwards == 0.0 and along == 0.0:
+            continue
+        bend_at(e, n, u, across, upwards, along, bend)
+        at, first, second = slab[i], columns[i, 0], columns[i, STATES]
+        a_moves, b_moves = 0 <= first < width, 0 <= second < width
+        # Many readings are made at their keyframes: from there nothing has been turned.
+        a_turns, b_turns = a_moves and turns(by_a), b_moves and turns(by_b)
+        if a_moves:
+            add_block(diagonal, at, first, first, bend, 1.0)
+            if a_turns:
+                add_turned(diagonal, at, first, bend, by_a, pulled_a, both)
+        if b_moves:
+            add_block(diagonal, at, second, second, bend, 1.0)
+            if b_turns:
+                add_turned(diagonal, at, second, bend, by_b, pulled_b, both)
+        if a_moves and b_moves:
+            add_both(diagonal, at, first, second, bend, -1.0)
+            if a_turns:
+                add_both(diagonal, at, second, first + PLACES, pulled_a, -1.0)
+            if b_turns:
+                add_both(diagonal, at, first, second + PLACES, pulled_b, -1.0)
+            if a_turns and b_turns:
+                multiply_across(by_a, pulled_b, both)
+                add_both(diagonal, at, first + PLACES, second + PLACES, both, -1.0)
+        if first >= width:
+            add_block(corners, 0, first - width, first - width, bend, 1.0)
+            if b_moves:
+                add_block(wide, at, second, first - width, bend, -1.0)
+                if b_turns:
+                    add_across(wide, at, second + PLACES, first - width, pulled_b, -1.0)
+        if second >= width:
+            add_block(corners, 0, second - width, second - width, bend, 1.0)
+            if a_moves:
+                add_block(wide, at, first, second - width, bend, -1.0)
+                if a_turns:
+                    add_across(wide, at, first + PLACES, second - width, pulled_a, -1.0)
+            elif first >= width:
+                add_both(corners, 0, first - width, second - width, bend, -1.0)
+
+
+@njit(cache=True)
+def bend_at(e: float, n: float, u: float, across: float, upwards: float, along: float, bend: Array) -> None:
+    """A curvature that is given along three axes at right angles, by the place of one end.
+
+    Args:
+        e: the line of sight, east (m).
+        n: the same, north (m).
+        u: the same, up (m).
+        across: along the horizontal axis across the line of sight.
+        upwards: along the other axis across it.
+        along: along the line of sight itself.
+        bend: takes it, 3 × 3.
+    """
+    level = e * e + n * n
+    squared = level + u * u
+    flat, distance = np.sqrt(level), np.sqrt(squared)
+    right_e, right_n = -n / flat, e / flat
+    over_e, over_n, over_u = -e * u / (flat * distance), -n * u / (flat * distance), flat / distance
+    there_e, there_n, there_u = e / distance, n / distance, u / distance
+    bend[0, 0] = across * right_e * right_e + upwards * over_e * over_e + along * there_e * there_e
+    bend[1, 1] = across * right_n * right_n + upwards * over_n * over_n + along * there_n * there_n
+    bend[2, 2] = upwards * over_u * over_u + along * there_u * there_u
+    bend[0, 1] = across * right_e * right_n + upwards * over_e * over_n + along * there_e * there_n
+    bend[0, 2] = upwards * over_e * over_u + along * there_e * there_u
+    bend[1, 2] = upwards * over_n * over_u + along * there_n * there_u
+    bend[1, 0], bend[2, 0], bend[2, 1] = bend[0, 1], bend[0, 2], bend[1, 2]
+
+
+@njit(cache=True)
+def turns(turned: Array) -> bool:
+    """Whether anything but its first three numbers moves an end: any derivative, 3 × 3, is not 0."""
+    size = 0.0
+    for r in range(PLACES):
+        for c in range(PLACES):
+            size += abs(turned[r, c])
+    return size > 0.0
+
+
+@njit(cache=True)
+def add_block(targets: Array, at: int, row: int, column: int, block: Array, sign: float) -> None:
+    """Add ±`block`, 3 × 3, to one of some matrices, from a row and a column on.
+
+    A view of the matrix would be counted, again and again, and that takes longer than the sum.
+    """
+    for r in range(PLACES):
+        for c in range(PLACES):
+            targets[at, row + r, column + c] += sign * block[r, c]
+
+
+@njit(cache=True)
+def add_across(targets: Array, at: int, row: int, column: int, block: Array, sign: float) -> None:
+    """The same with the block's transpose."""
+    for r in range(PLACES):
+        for c in range(PLACES):
+            targets[at, row + r, column + c] += sign * block[c, r]
+
+
+@njit(cache=True)
+def add_both(targets: Array, at: int, row: int, column: int, block: Array, sign: float) -> None:
+    """The same to a symmetric matrix: the block, and across the diagonal its transpose."""
+    add_block(targets, at, row, column, block, sign)
+    add_across(targets, at, column, row, block, sign)
+
+
+@njit(cache=True)
+def multiply(one: Array, other: Array, product: Array) -> None:
+    """Put A B in the place of `product`, 3 × 3 each."""
+    for r in range(PLACES):
+        for c in range(PLACES):
+            product[r, c] = one[r, 0] * other[0, c] + one[r, 1] * other[1, c] + one[r, 2] * other[2, c]
+
+
+@njit(cache=True)
+def multiply_across(one: Array, other: Array, product: Array) -> None:
+    """Put Aᵀ B in the place of `product`, 3 × 3 each."""
+    for r in range(PLACES):
+        for c in range(PLACES):
+            product[r, c] = one[0, r] * other[0, c] + one[1, r] * other[1, c] + one[2, r] * other[2, c]
+
+
+@njit(cache=True, forceinline=True)
+def add_turned(
+    targets: Array, at: int, first: int, bend: Array, turned: Array, pulled: Array, both: Array
+) -> None:
+    """Add what the block of a moving end has besides its place: B T, its transpose, and Tᵀ B T.
+
+    Put where it is called, see `ends.place_end`.
+
+    Args:
+        targets: of the keyframes, k × n × n, changed.
+        at: its keyframe.
+        first: the first of its numbers.
+        bend: B, curvature by its place, 3 × 3.
+        turned: T, derivatives of its place by its last three numbers, 3 × 3.
+        pulled: takes B T, 3 × 3.
+        both: is used, 3 × 3.
+    """
+    multiply(bend, turned, pulled)
+    add_both(targets, at, first, first + PLACES, pulled, 1.0)
+    multiply_across(turned, pulled, both)
+    add_block(targets, at, first + PLACES, first + PLACES, both, 1.0)

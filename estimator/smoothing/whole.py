@@ -1,0 +1,170 @@
+"""The whole incident solved with everything known: once through by the filter, then all keyframes at once.
+
+The first pass decides what is fused and where to start; then all keyframes are solved together.
+"""
+
+import math
+from bisect import bisect_left
+from collections.abc import Sequence
+
+import numpy as np
+
+from estimator.fusion.beginnings import decide
+from estimator.fusion.ledger import Ledger
+from estimator.fusion.order import UNTIL_T
+from estimator.fusion.state import FusionState
+from estimator.fusion.tick import flush, fold_tick, keep_poses
+from estimator.graph.robust import mixture_cost
+from estimator.inertial.samples import AnyFolded
+from estimator.smoothing.changes.branch import branch, reunite
+from estimator.smoothing.changes.elsewhere import GAIN
+from estimator.smoothing.changes.moved import Moved, moved_nodes
+from estimator.smoothing.extent import spacing_s as usual_s
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.learning.learn import learn
+from estimator.smoothing.learning.slips import withdraw
+from estimator.smoothing.problem.solve import RESTING, Problem
+from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.readings.rows import Rows
+from estimator.smoothing.settle import keep_keyframes, settle
+from estimator.smoothing.window import keep_up, look_again
+
+SLACKS_M = (3.0, 1.0, 0.3, 0.1)
+LEARNING = (1.5, 1.0, 0.5)
+"""How far the logarithms of noise variances may move, solution by solution."""
+LEARNING_RESTING = 1.0
+"""What a solution may leave of its log likelihood that is only learned from."""
+TICK_S = 2.0
+"""The first pass only finds where to start: its ticks are longer than the online tracker's. In still longer
+ones a node moves too far for the noise that is learned on the way."""
+RARER = 48.0
+"""The first pass only finds where to start: its window is solved this many times more rarely."""
+MOVES = 20
+"""So many nodes at most are found elsewhere at a time: each asks for another solution."""
+LARGEST = 60_000_000
+"""Numbers that the chain may hold: beyond it keyframes are set farther apart."""
+
+
+def first_pass(
+    readings: Sequence[AnyFolded], origin_wgs84: tuple[float, float, float] | None = None
+) -> FusionState:
+    """Fold the readings once, in ticks of `TICK_S`.
+
+    Args:
+        readings: in canonical order.
+        origin_wgs84: latitude (°), longitude (°), height (m) of the local origin, if known.
+    """
+    state = FusionState(origin_wgs84)
+    state.ledger = Ledger(complete=True)
+    start = 0
+    while start < len(readings):
+        until_t = (math.floor(readings[start].until_t / TICK_S) + 1) * TICK_S
+        end = bisect_left(readings, until_t, start, key=UNTIL_T)
+        fold_tick(state, until_t, readings[start:end])
+        keep_up(state, until_t, RARER)
+        start = end
+    flush(state)
+    look_again(state)
+    keep_poses(state)
+    return state
+
+
+def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
+    """Solve everything, learning on the way how noisy each unit is.
+
+    Which breadcrumbs were moved, and then which steps were reported wrongly, is asked again with all that is
+    known: the first pass may have taken the one for the other, or a later epoch for that of a kick. Whether a
+    technology is calibrated the first pass has judged. The same walls, met again and again for hours, look
+    like a scale that is surer and surer.
+
+    Args:
+        state: the fusion after all readings, with a complete ledger; the solution's may be a copy of it.
+    """
+    withdraw(state)
+    other = state.copy()
+    begun = [_begun(state)]
+    if reunite(other):
+        begun.append(_begun(other))
+    problem, solved = min(begun, key=lambda one: _misfit(*one))
+    state, rows = problem.layout.state, problem.rows
+    first, *later = LEARNING
+    learn(state, problem, solved, first, kinds=False)
+    for most in later:
+        problem = Problem(_layout(state), rows, None)
+        solved = problem.solve(solved.x, iterations=1)
+        learn(state, problem, solved, most, kinds=False)
+    problem = _problem(state)
+    problem, solved = _settled(problem, problem.solve(solved.x), RESTING)
+    # Last, for a node that was moved makes ranges differ like a wall.
+    problem.rows.obstruct(solved.x)
+    return problem, problem.solve(solved.x) if problem.rows.shift.any() else solved
+
+
+def _begun(state: FusionState) -> tuple[Problem, Solved]:
+    """A solution that is at rest enough to be learned from, with all nodes that were moved where they lie."""
+    problem = _problem(state)
+    solved = problem.solve(problem.layout.start(), SLACKS_M, resting=LEARNING_RESTING)
+    return _settled(problem, solved, LEARNING_RESTING)
+
+
+def _misfit(problem: Problem, solved: Solved) -> float:
+    """How much worse a solution is than one that fits all its readings, in log likelihood.
+
+    Each place that it needs is to be worth what it is worth to find one.
+    """
+    rows = problem.rows
+    at_best = mixture_cost(np.zeros(len(rows.sigma)), rows.sigma, *rows.noise.T)
+    return float(solved.cost - at_best.sum() + GAIN * len(problem.layout.stands))
+
+
+def _settled(problem: Problem, solved: Solved, resting: float) -> tuple[Problem, Solved]:
+    """The solution with all nodes that were moved where they lie: they begin anew in its state.
+
+    Args:
+        problem: of the whole incident.
+        solved: its solution with them where they were thought to be.
+        resting: see `Problem.solve`.
+    """
+    for _ in range(MOVES):
+        moves, _ = moved_nodes(problem, solved, math.inf)
+        if not moves:
+            break
+        _begin_elsewhere(problem, solved, moves)
+        problem = _problem(problem.layout.state)
+        solved = problem.solve(problem.layout.start(), SLACKS_M, resting=resting)
+    return problem, solved
+
+
+def _problem(state: FusionState) -> Problem:
+    layout = _layout(state)
+    rows = Rows(layout, -math.inf)
+    rows.learn(state.noise)
+    return Problem(layout, rows, None)
+
+
+def _layout(state: FusionState) -> Layout:
+    begins = state.ledger.table("begins")
+    since_t = float(begins[:, 0].min()) if len(begins) else state.newest_t
+    return Layout(state, since_t, spacing_s(state, since_t, state.newest_t))
+
+
+def _begin_elsewhere(problem: Problem, solved: Solved, moves: Sequence[Moved]) -> None:
+    """Nodes that were moved begin anew, beside the others as they are in the solution."""
+    layout, state = problem.layout, problem.layout.state
+    settle(state, layout, solved, solved.chain.remainder(layout.length - 1).matrix)
+    keep_keyframes(state, layout, solved.x)
+    for moved in moves:
+        branch(state, moved)
+    decide(state, math.inf)
+
+
+def spacing_s(state: FusionState, since_t: float, until_t: float) -> float:
+    """How far apart keyframes stand (s): as near as the whole chain allows."""
+    width = 6 * len({row[1] for row in state.ledger.table("begins")})
+    border = 3 * len(state.ledger.table("stands")) + 8
+    spacing = usual_s(state)
+    while (until_t - since_t) / spacing * width * (
+        border + 2 * width
+    ) > LARGEST and until_t - since_t > spacing:
+        spacing *= 2.0
+    return spacing

@@ -1,0 +1,201 @@
+"""The smoothed solution against GTSAM's batch optimum on the same factors.
+
+The noise of a motion depends on the estimate: GTSAM gets it frozen at the solution that it is compared with.
+"""
+
+from collections import defaultdict
+from collections.abc import Callable
+from typing import Any
+
+import gtsam
+import numpy as np
+import pytest
+
+from estimator.graph.dense import Array, Indices
+from estimator.measurements import AnyReading
+from estimator.simulate import paper_a
+from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.whole import SLACKS_M
+from tests.estimator.smoothing.windows import fused, problem_of
+from tests.estimator.walks import two_responders
+
+NO_OUTLIERS = 1e-200
+AGAIN = 10
+"""Solutions from the one before: each weighs the readings anew by where it starts from."""
+AT_REST = 1e-9
+
+
+class Blocks:
+    """The unknowns as GTSAM's variables: six of a walk and keyframe, three of what stands, two of a radio."""
+
+    def __init__(self, problem: Problem, start: Array) -> None:
+        self.problem, self.start = problem, start
+        layout = problem.layout
+        size = layout.length * layout.width
+        self.columns: list[Indices] = []
+        self.key_of = np.full(len(start), -1)
+        for i, walk in enumerate(layout.walks):
+            for k in range(walk.first, walk.last + 1):
+                self._add(k * layout.width + STATES * i + np.arange(STATES))
+        for first in layout.stands.values():
+            self._add(size + first + np.arange(3))
+        for first in layout.technologies.values():
+            self._add(size + first + np.arange(2))
+        self.move(start)
+
+    def _add(self, columns: Indices) -> None:
+        self.key_of[columns] = len(self.columns)
+        self.columns.append(columns)
+
+    def values(self) -> Any:
+        found = gtsam.Values()
+        for key, columns in enumerate(self.columns):
+            found.insert(key, self.start[columns])
+        return found
+
+    def flat(self, values: Any) -> Array:
+        x = self.start.copy()
+        for key, columns in enumerate(self.columns):
+            x[columns] = values.atVector(key)
+        return x
+
+    def factor(
+        self, keys: list[int], sigmas: Any, error: Callable[[], Array], slopes: Callable[[], Array]
+    ) -> Any:
+        """A factor of errors, m, and derivatives by the columns of its keys, m × n, at `self.at`."""
+        columns = [self.columns[key] for key in keys]
+        ends = np.cumsum([len(c) for c in columns])
+
+        def called(_this: Any, values: Any, jacobians: Any) -> Array:
+            if any((values.atVector(k) != self.at[c]).any() for k, c in zip(keys, columns, strict=True)):
+                self.move(self.flat(values))
+            if jacobians is not None:
+                for i, block in enumerate(np.split(slopes(), ends[:-1], axis=1)):
+                    jacobians[i] = np.asfortranarray(block)
+            return error()
+
+        return gtsam.CustomFactor(sigmas, keys, called)
+
+    def move(self, x: Array) -> None:
+        """Linearise all at once: what a factor says depends on its own keys only."""
+        self.at = x
+        self.linear, self.motions = self.problem.rows.linearise(x), self.problem.motions(x)
+
+
+def motion_factors(blocks: Blocks, frozen: Array) -> list[Any]:
+    problem = blocks.problem
+    layout = problem.layout
+    found = []
+    for i, (walk, at) in enumerate(zip(layout.walks, problem.motions(frozen), strict=True)):
+        for step, noise in enumerate(at.noise):
+            first = (walk.first + step) * layout.width + STATES * i
+            keys = [int(blocks.key_of[first]), int(blocks.key_of[first + layout.width])]
+
+            def error(i: int = i, step: int = step) -> Array:
+                return np.asarray(blocks.motions[i].residual[step])
+
+            def slopes(i: int = i, step: int = step) -> Array:
+                return np.hstack([-blocks.motions[i].transition[step], np.eye(STATES)])
+
+            found.append(blocks.factor(keys, gtsam.noiseModel.Gaussian.Covariance(noise), error, slopes))
+    return found
+
+
+def row_factors(blocks: Blocks) -> list[Any]:
+    """The readings, those of the same variables in one factor."""
+    layout, rows = blocks.problem.layout, blocks.problem.rows
+    size = layout.length * layout.width
+    inside = rows.columns < layout.width
+    flat = np.where(
+        inside, rows.slab[:, None] * layout.width + rows.columns, size + rows.columns - layout.width
+    )
+    flat[rows.columns < 0] = -1
+    alike: dict[tuple[int, ...], list[int]] = defaultdict(list)
+    for row, columns in enumerate(flat):
+        alike[tuple(np.unique(blocks.key_of[columns[columns >= 0]]).tolist())].append(row)
+    found = []
+    for keys, members in alike.items():
+        chosen = np.array(members)
+        own = np.concatenate([blocks.columns[key] for key in keys])
+        belongs = (flat[chosen][:, :, None] == own).astype(np.float64)
+
+        def error(chosen: Indices = chosen) -> Array:
+            return -blocks.linear.residual[chosen]
+
+        def slopes(chosen: Indices = chosen, belongs: Array = belongs) -> Array:
+            return np.asarray(np.einsum("mc,mcn->mn", blocks.linear.jacobian[chosen], belongs))
+
+        sigmas = gtsam.noiseModel.Diagonal.Sigmas(rows.sigma[chosen])
+        found.append(blocks.factor(list(keys), sigmas, error, slopes))
+    return found
+
+
+def prior_factors(blocks: Blocks) -> list[Any]:
+    problem = blocks.problem
+    by_column = dict(
+        zip(problem._at.tolist(), zip(problem._mean, problem._information, strict=True), strict=True)
+    )
+    found = []
+    for key, columns in enumerate(blocks.columns):
+        if int(columns[0]) in by_column:
+            mean, information = np.array([by_column[c] for c in columns.tolist()]).T
+            found.append(
+                gtsam.PriorFactorVector(key, mean, gtsam.noiseModel.Diagonal.Precisions(information))
+            )
+    return found
+
+
+def optimum(problem: Problem, start: Array, frozen: Array) -> Array:
+    """GTSAM's optimum, flat."""
+    blocks = Blocks(problem, start)
+    graph = gtsam.NonlinearFactorGraph()
+    for factor in [*motion_factors(blocks, frozen), *row_factors(blocks), *prior_factors(blocks)]:
+        graph.add(factor)
+    settings = gtsam.LevenbergMarquardtParams()
+    settings.setRelativeErrorTol(1e-12)
+    settings.setAbsoluteErrorTol(1e-12)
+    optimizer = gtsam.LevenbergMarquardtOptimizer(graph, blocks.values(), settings)
+    values = optimizer.optimize()
+    return blocks.flat(values)
+
+
+def paper_a_walk() -> list[AnyReading]:
+    return [r for r in paper_a.build(1).readings if r.t <= 120.0]
+
+
+def ranges_to_unknown_beacons() -> list[AnyReading]:
+    return two_responders(40)
+
+
+def misfit(problem: Problem, x: Array) -> float:
+    """The cost but for its constant: half the sum of squares."""
+    linear = problem.rows.linearise(x)
+    return problem.cost(x, linear.residual, problem.motions(x)) - float(np.log(problem.rows.sigma).sum())
+
+
+@pytest.fixture(scope="module", params=[paper_a_walk, ranges_to_unknown_beacons])
+def problem(request: pytest.FixtureRequest) -> Problem:
+    found = problem_of(fused(request.param()))
+    found.rows.noise[:, 0] = NO_OUTLIERS
+    return found
+
+
+def test_the_smoothed_solution_costs_no_more_than_gtsams_optimum(problem: Problem) -> None:
+    start = problem.layout.start()
+    ours = problem.solve(start, SLACKS_M)
+    theirs = optimum(problem, start, ours.x)
+    assert misfit(problem, ours.x) <= 1.001 * misfit(problem, theirs)
+
+
+def test_solved_until_it_rests_everything_is_where_gtsam_puts_it(problem: Problem) -> None:
+    layout, start = problem.layout, problem.layout.start()
+    ours = problem.solve(start, SLACKS_M)
+    for _ in range(AGAIN):
+        ours = problem.solve(ours.x, resting=AT_REST)
+    theirs = optimum(problem, start, ours.x)
+    size = layout.length * layout.width
+    off = np.abs(ours.x - theirs)
+    stands = size + max(layout.stands.values()) + 3
+    assert off[:size].reshape(-1, STATES)[:, :3].max() < 0.01
+    assert off[size:stands].max() < 0.01
