@@ -60,7 +60,9 @@ GONE = 8.0
 """A window this many times as long as it may be is begun anew."""
 TOLD_S, MORE = 8.0, 0.5
 """What is new where headings are asked about rarely: so much at least, and this share of what is known."""
-ITERATIONS = 4
+ITERATIONS = 8
+"""Most windows rest after two or three steps. Among walls little holds a map: left after four, one was 17 m
+off where it would have rested 9 m off."""
 RESTING = 0.1
 """A window that gains less in log likelihood is solved again soon anyway."""
 
@@ -196,6 +198,11 @@ def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
         text = f"the link between {pair[0]} and {pair[1]} changed by {link.change_db:+.0f} dB for good"
         state.say("link_changed", link.t, pair[0], text, once=f"link {pair[0]} {pair[1]}")
     moves, state.suspected = moved_nodes(problem, solved)
+    if moves and not solved.rests:
+        # What a solution has left undone is no breadcrumb's fault: it is asked again at rest.
+        rested = problem.solve(solved.x)
+        moves, state.suspected = moved_nodes(problem, rested)
+        state.due = True
     for moved in moves:
         branch(state, moved)
         state.due = True
