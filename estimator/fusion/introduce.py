@@ -28,7 +28,9 @@ def introduce(state: FusionState, reading: Node) -> None:
     elif known.role != reading.role and not _may_become(state, known, reading):
         return
     else:
-        node = replace(known, role=reading.role, named=True, t=max(known.t, reading.t))
+        # Of who has a place a name is no news: his fix is as old as it was.
+        since_t = known.t if known.decided else max(known.t, reading.t)
+        node = replace(known, role=reading.role, named=True, t=since_t)
     if reading.heading_rad is not None:
         node = replace(node, heading_rad=reading.heading_rad)
     if reading.heading_sigma_rad is not None:

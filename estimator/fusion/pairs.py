@@ -48,6 +48,9 @@ class Pairs:
     """The readings between two nodes of a tick; what is the same for many of them is looked up once.
 
     Nothing else may change the nodes' places or the learned noise meanwhile.
+
+    Attributes:
+        fused_t: epoch of the newest reading that is held against each node's place (s).
     """
 
     def __init__(self, state: FusionState) -> None:
@@ -59,11 +62,12 @@ class Pairs:
         self._technologies: list[Technology] = []
         self._held: dict[str, int] = {}
         self._sighted: dict[str, int] = {}
+        self.fused_t: dict[str, float] = {}
 
     def take(self, readings: Sequence[AnyPair]) -> None:
         """Take readings in, in order of epoch."""
         state, named, told = self._state, self._named, self._told
-        link_of, held, fused = state.links.number, self._held, 0
+        link_of, held, fused, fused_t = state.links.number, self._held, 0, self.fused_t
         for reading in readings:
             t, name_a, name_b = reading.t, reading.a, reading.b
             a = named.get(name_a) or self._name(name_a, t)
@@ -84,7 +88,9 @@ class Pairs:
                 usual = physics.RANGE_SIGMA_M.get(source, physics.RANGE_SIGMA_OTHER_M)
                 sigma = max(reading.sigma_m or usual, physics.SIGMA_FLOOR_M)
             else:
-                fused += self._bear(a, b, reading)
+                if self._bear(a, b, reading):
+                    fused += 1
+                    fused_t[name_a] = fused_t[name_b] = t
                 continue
             if kind == RANGE and "unit" in (a.node.mode, b.node.mode):
                 state.uncalibrated.setdefault(source, physics.UNCALIBRATED)
@@ -93,7 +99,9 @@ class Pairs:
                 technology = self._technology(kind, source, between)
             link = link_of(source, name_a, name_b)
             told += (t, value, sigma, constant, technology, link, a.number, b.number)
-            fused += between
+            if between:
+                fused += 1
+                fused_t[name_a] = fused_t[name_b] = t
         state.count("fused", fused)
 
     def enter(self) -> Array:

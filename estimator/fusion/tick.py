@@ -167,21 +167,27 @@ def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Sing
             others.append(reading)
             until.update(dict.fromkeys(names_of(reading), reading.t))
     _carry(state, until)
-    for reading in others:
-        if isinstance(reading, Position):
-            singles.extend(held.fix(state, reading))
-        elif isinstance(reading, (Altitude, Pressure)):
-            singles.extend(held.height(state, reading))
-        elif isinstance(reading, Drop):
-            _drop(state, reading)
     pairs = Pairs(state)
+    told = pairs.fused_t
+    for reading in others:
+        if isinstance(reading, (Position, Altitude, Pressure)):
+            found = held.fix(state, reading) if isinstance(reading, Position) else held.height(state, reading)
+            singles.extend(found)
+            if found:
+                told[reading.node] = reading.t
+        elif isinstance(reading, Drop) and _drop(state, reading):
+            told[reading.node] = told[reading.by] = reading.t
     pairs.take(between)
     rows = pairs.enter()
     update(state, table_of(state.graph.starts, singles, rows))
     beginnings.decide(state)
-    for name, t in until.items():
+    for name, heard_t in until.items():
         node = state.nodes.get(name)
-        if node is not None and node.t < t and node.mode != "retired":
+        if node is None or node.mode == "retired":
+            continue
+        # What says nothing of a place leaves its fix as old as it was.
+        t = heard_t if node.mode in ("undecided", "fixed") else told.get(name, node.t)
+        if node.t < t:
             state.nodes[name] = replace(node, t=t)
 
 
@@ -235,7 +241,8 @@ def _carry(state: FusionState, until: Mapping[str, float]) -> None:
         motion.drift_units(state, silent)
 
 
-def _drop(state: FusionState, reading: Drop) -> None:
+def _drop(state: FusionState, reading: Drop) -> bool:
+    """Let a breadcrumb lie where its bearer stands; False where that is not known, or it lies already."""
     by = state.node_of(reading.by, "responder", reading.t)
     if by.mode == "undecided" and by.role in MOVING_ROLES:
         introduce.begin_at_base(state, by, reading.t)
@@ -244,12 +251,13 @@ def _drop(state: FusionState, reading: Drop) -> None:
         text = f"{reading.by} has no position: {reading.node} cannot be dropped by it"
         state.say("conflict", reading.t, reading.node, text)
         state.count("not_fused")
-        return
+        return False
     where = state.place(by)
     if by.moving:
         where = where + np.array(offset_of(state, by, reading.t))
     done = introduce.drop(state, reading.node, by, where, reading.t)
     state.count("fused" if done else "not_fused")
+    return done
 
 
 def _retire(state: FusionState, reading: Retire) -> None:

@@ -1,0 +1,55 @@
+"""How old a fix is: as old as the newest reading that tells of its place."""
+
+import pytest
+
+from estimator.estimate import NodeEstimate
+from estimator.measurements import AnyReading
+from estimator.measurements.altitude import Altitude, Pressure
+from estimator.measurements.bearing import Bearing
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.drop import Drop
+from estimator.measurements.node import Node
+from estimator.measurements.position import Position
+from estimator.measurements.range import Range
+from estimator.measurements.rssi import Rssi
+from estimator.trackers.kirchhoff import KirchhoffTracker
+
+SILENT_SINCE, NOW = 20.0, 80.0
+NAMED = Node(t=NOW, node="ff1", role="responder", callsign="E7-9", crew="E7")
+
+TELL_NOTHING: list[AnyReading] = [
+    NAMED,
+    Position(t=NOW, node="ff1", wgs84=(48.1, 11.5, 520.0)),
+    Pressure(t=NOW, node="ff1", pressure_pa=101_000.0),
+    Rssi(t=NOW, a="ff1", b="unplaced", dbm=-60.0),
+    Range(t=NOW, a="ff1", b="unplaced", range_m=7.0),
+    Bearing(t=NOW, a="ff1", b="unplaced", bearing_rad=0.1),
+]
+TELL: list[AnyReading] = [
+    Displacement(t=NOW, node="ff1", delta_m=(1.0, 0.0, 0.0)),
+    Position(t=NOW, node="ff1", position_m=(10.0, 0.0, 0.0)),
+    Altitude(t=NOW, node="ff1", up_m=0.0),
+    Rssi(t=NOW, a="ff1", b="base", dbm=-60.0),
+    Range(t=NOW, a="base", b="ff1", range_m=10.0),
+    Drop(t=NOW, node="b1", by="ff1"),
+]
+
+
+def after(reading: AnyReading) -> NodeEstimate:
+    """A responder who has walked for 20 s, was silent for a minute, and is then named in a reading."""
+    tracker = KirchhoffTracker()
+    tracker.fold([Node(t=0.0, node="base", role="base"), Node(t=0.0, node="ff1", role="responder")])
+    steps = [Displacement(t=float(t), node="ff1", delta_m=(0.5, 0.0, 0.0)) for t in range(1, 21)]
+    tracker.fold([*steps, reading])
+    return next(estimate for estimate in tracker.estimates() if estimate.node == "ff1")
+
+
+@pytest.mark.parametrize("reading", TELL_NOTHING, ids=lambda reading: type(reading).__name__)
+def test_what_says_nothing_of_a_place_leaves_the_fix_as_old_as_it_was(reading: AnyReading) -> None:
+    """Who was lost would be shown as found again, where he was last heard of."""
+    assert after(reading).t == SILENT_SINCE
+
+
+@pytest.mark.parametrize("reading", TELL, ids=lambda reading: type(reading).__name__)
+def test_what_tells_of_a_place_makes_the_fix_new(reading: AnyReading) -> None:
+    assert after(reading).t == NOW
