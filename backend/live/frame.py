@@ -7,7 +7,7 @@ import msgspec
 
 from estimator.estimate import Covariance6, Vector3
 from estimator.measurements.node import Role
-from estimator.measurements.status import AlarmKind
+from estimator.measurements.status import AlarmKind, AlarmState
 
 Status = Literal["live", "stale", "lost", "retired"]
 
@@ -57,19 +57,19 @@ class FrameNode(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class FrameAlarm(msgspec.Struct, frozen=True, kw_only=True):
-    """An alarm that has not been cleared.
+    """An alarm that stands: until it is cleared, and a call for help until a person has acknowledged it too.
 
     Attributes:
         node: whose alarm it is.
         alarm: which one.
-        state: raised, or acknowledged.
+        state: raised, acknowledged, or cleared before any person had acknowledged it.
         t: when it was raised, Unix seconds.
-        text: what was said.
+        text: what was said, by who raised it and by who answered, a line each.
     """
 
     node: str
     alarm: AlarmKind
-    state: Literal["raised", "acknowledged", "cleared"]
+    state: AlarmState
     t: float
     text: str | None
 
@@ -100,7 +100,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True):
         clock_t: the same, under the name that says so.
         newest_t: the newest epoch folded, Unix seconds; null before the first reading.
         nodes: all nodes ever introduced.
-        alarms: alarms that have not been cleared.
+        alarms: alarms that stand.
         notices: the newest notices of the estimator.
     """
 

@@ -1,14 +1,13 @@
 """The picture of an incident as the worker makes it: what is known, whenever it is looked at."""
 
 import zlib
-from typing import Literal
 
 import msgspec
 
 from backend.errors import Unavailable
 from estimator.estimate import Covariance6, Vector3
 from estimator.measurements.node import Role
-from estimator.measurements.status import AlarmKind
+from estimator.measurements.status import AlarmKind, AlarmState
 
 VERSION = 1
 
@@ -58,19 +57,19 @@ class RecordNode(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
 
 
 class RecordAlarm(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
-    """An alarm that has not been cleared.
+    """An alarm that stands.
 
     Attributes:
         node: whose alarm it is.
         alarm: which one.
-        state: raised, or acknowledged.
+        state: raised, acknowledged, or cleared before any person had acknowledged it.
         t: when it was raised, Unix seconds.
-        text: what was said.
+        text: what was said, a line each.
     """
 
     node: str
     alarm: AlarmKind
-    state: Literal["raised", "acknowledged"]
+    state: AlarmState
     t: float
     text: str | None = None
 
@@ -97,7 +96,7 @@ class PictureRecord(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     Attributes:
         t: newest epoch in it, Unix seconds; None before the first reading.
         nodes: all nodes ever introduced, in order of introduction.
-        alarms: alarms that have not been cleared, oldest first.
+        alarms: alarms that stand, oldest first.
         notices: the newest notices, oldest first.
     """
 

@@ -1,17 +1,14 @@
 """What is shown but not fused: names, crews, vitals, alarms, notices. A pure fold over readings."""
 
 from collections.abc import Iterable
-from typing import Literal
 
 import msgspec
 
 from backend.live.record import PictureRecord, RecordAlarm, RecordNode, RecordNotice
+from backend.tracking.alarms import AlarmEntry
 from estimator.estimate import NodeEstimate, Notice
 from estimator.measurements import Alarm, AnyReading, Node, Status
 from estimator.measurements.status import AlarmKind
-
-REPEAT_S = 30.0
-"""Units repeat an alarm while it sounds: a raise so soon after the last one is the same alarm."""
 
 NOTICES_KEPT = 32
 
@@ -40,22 +37,6 @@ class NodeBoard(msgspec.Struct):
     motionless_s: float | None = None
     status_t: float | None = None
     moved_t: float | None = None
-
-
-class AlarmEntry(msgspec.Struct):
-    """An alarm of a node, also after it was cleared.
-
-    Attributes:
-        state: what it is now.
-        t: when it was raised, Unix seconds.
-        repeated_t: when it was last raised again, Unix seconds.
-        text: what was said.
-    """
-
-    state: Literal["raised", "acknowledged", "cleared"]
-    t: float
-    repeated_t: float
-    text: str | None = None
 
 
 class Board(msgspec.Struct):
@@ -120,16 +101,10 @@ class Board(msgspec.Struct):
         self._node(reading.node, reading.t)
         kinds = self.alarms.setdefault(reading.node, {})
         known = kinds.get(reading.alarm)
-        if reading.state == "raised":
-            if known is None or reading.t > known.repeated_t:
-                kinds[reading.alarm] = _raised(known, reading)
-            return
-        # Acknowledging and clearing count in the order of the log, not by their epochs: a tablet whose clock
-        # is behind must still be able to acknowledge.
         if known is None:
-            known = kinds[reading.alarm] = AlarmEntry(reading.state, reading.t, reading.t)
-        known.state = reading.state
-        known.text = reading.text if reading.text is not None else known.text
+            kinds[reading.alarm] = AlarmEntry.first(reading)
+        else:
+            known.hear(reading)
 
     def picture(self, estimates: Iterable[NodeEstimate], newest_t: float | None) -> PictureRecord:
         """The record of what the tracker knows and what stands here."""
@@ -143,24 +118,12 @@ class Board(msgspec.Struct):
             RecordAlarm(node=node, alarm=kind, state=entry.state, t=entry.t, text=entry.text)
             for node, kinds in self.alarms.items()
             for kind, entry in kinds.items()
-            if entry.state != "cleared"
+            if entry.stands(kind)
         ]
         standing.sort(key=lambda alarm: (alarm.t, alarm.node, alarm.alarm))
         return PictureRecord(
             t=newest_t, nodes=tuple(nodes), alarms=tuple(standing), notices=tuple(self.notices)
         )
-
-
-def _raised(known: AlarmEntry | None, reading: Alarm) -> AlarmEntry:
-    """The entry after an alarm was raised, or raised again."""
-    if known is None or known.state == "cleared":
-        return AlarmEntry("raised", reading.t, reading.t, reading.text)
-    still_sounding = reading.t - known.repeated_t <= REPEAT_S
-    new_words = reading.text is not None and reading.text != known.text
-    text = reading.text if reading.text is not None else known.text
-    if known.state == "acknowledged" and (new_words or not still_sounding):
-        return AlarmEntry("raised", reading.t, reading.t, text)
-    return AlarmEntry(known.state, known.t, reading.t, text)
 
 
 def _joined(estimate: NodeEstimate, known: NodeBoard | None) -> RecordNode:

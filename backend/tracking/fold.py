@@ -15,7 +15,7 @@ from estimator.estimate import Relative
 from estimator.measurements import AnyReading
 from estimator.trackers.base import Tracker, TrackerSettings
 
-VERSION = 1
+VERSION = 2
 
 
 class OtherState(Exception):  # noqa: N818 - names the condition

@@ -1,7 +1,7 @@
 """What is shown but not fused."""
 
 from backend.live.record import PictureRecord, RecordAlarm
-from backend.tracking.board import NOTICES_KEPT, REPEAT_S, Board
+from backend.tracking.board import NOTICES_KEPT, Board
 from estimator.estimate import NodeEstimate, Notice
 from estimator.measurements import Alarm, AnyReading, Node, Range, Status
 
@@ -14,14 +14,6 @@ def board(*readings: AnyReading) -> Board:
 
 def picture(made: Board, *nodes: str) -> PictureRecord:
     return made.picture([NodeEstimate(node=node, role="responder", t=1.0) for node in nodes], 1.0)
-
-
-def alarms(*readings: AnyReading) -> list[tuple[str, str, float, str | None]]:
-    return [(a.alarm, a.state, a.t, a.text) for a in picture(board(*readings)).alarms]
-
-
-def alarm(state: str, t: float, kind: str = "mayday", text: str | None = None, node: str = "ff1") -> Alarm:
-    return Alarm(t=t, node=node, alarm=kind, state=state, text=text)  # type: ignore[arg-type]  # literals as text
 
 
 def test_names_stay_until_they_are_changed() -> None:
@@ -43,56 +35,8 @@ def test_each_vital_sign_is_the_newest_that_was_reported() -> None:
     assert (node.battery, node.air_bar, node.temperature_c, node.motionless_s) == (0.9, 150.0, 40.0, None)
 
 
-def test_a_mayday_stands_until_it_is_cleared() -> None:
-    raised = alarm("raised", 10.0, text="trapped")
-    assert alarms(raised) == [("mayday", "raised", 10.0, "trapped")]
-    assert alarms(raised, alarm("acknowledged", 12.0)) == [("mayday", "acknowledged", 10.0, "trapped")]
-    assert alarms(raised, alarm("acknowledged", 12.0), alarm("cleared", 13.0)) == []
-
-
-def test_a_tablet_whose_clock_is_behind_can_acknowledge() -> None:
-    assert alarms(alarm("raised", 1000.0), alarm("acknowledged", 10.0)) == [
-        ("mayday", "acknowledged", 1000.0, None)
-    ]
-
-
-def test_a_node_may_have_several_alarms_the_oldest_first() -> None:
-    assert alarms(alarm("raised", 11.0, "help"), alarm("raised", 10.0, "pass"), alarm("raised", 12.0)) == [
-        ("pass", "raised", 10.0, None),
-        ("help", "raised", 11.0, None),
-        ("mayday", "raised", 12.0, None),
-    ]
-
-
-def test_a_unit_that_keeps_sounding_does_not_undo_the_acknowledgement() -> None:
-    sounding = [alarm("raised", 10.0 + i, "pass") for i in range(5)]
-    more = [alarm("raised", 15.0 + i, "pass") for i in range(50)]
-    assert alarms(*sounding, alarm("acknowledged", 15.0, "pass"), *more) == [
-        ("pass", "acknowledged", 10.0, None)
-    ]
-
-
-def test_a_new_call_after_silence_or_with_new_words_is_a_new_alarm() -> None:
-    acknowledged = (alarm("raised", 10.0, text="trapped"), alarm("acknowledged", 12.0))
-    later = alarm("raised", 11.0 + REPEAT_S + 10.0)
-    assert alarms(*acknowledged, later) == [("mayday", "raised", later.t, "trapped")]
-    assert alarms(*acknowledged, alarm("raised", 13.0, text="low air")) == [
-        ("mayday", "raised", 13.0, "low air")
-    ]
-
-
-def test_an_alarm_that_comes_again_by_another_way_stays_cleared() -> None:
-    raised = alarm("raised", 10.0)
-    assert alarms(raised, alarm("cleared", 12.0), raised) == []
-    assert alarms(raised, alarm("cleared", 12.0), alarm("raised", 13.0)) == [("mayday", "raised", 13.0, None)]
-
-
-def test_an_acknowledgement_of_an_alarm_that_was_never_heard_shows_it() -> None:
-    assert alarms(alarm("acknowledged", 5.0)) == [("mayday", "acknowledged", 5.0, None)]
-
-
 def test_who_raises_an_alarm_is_shown_even_if_the_tracker_does_not_know_of_it() -> None:
-    made = picture(board(alarm("raised", 10.0)))
+    made = picture(board(Alarm(t=10.0, node="ff1", alarm="mayday", state="raised")))
     assert [(node.node, node.role, node.t, node.position_m) for node in made.nodes] == [
         ("ff1", "responder", 10.0, None)
     ]

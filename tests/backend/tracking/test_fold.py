@@ -4,9 +4,11 @@ import random
 
 import pytest
 
+from backend.live import record
 from backend.log.base import LoggedBatch, RecordedFrame
 from backend.tracking.fold import IncidentFold, OtherState
-from estimator.measurements import AnyReading
+from estimator.measurements import Alarm, AnyReading, Status
+from estimator.measurements.status import AlarmState
 from estimator.trackers import kirchhoff
 from estimator.trackers.base import TrackerSettings
 from tests.backend.tracking.conftest import walk
@@ -41,6 +43,30 @@ def test_a_fold_that_is_restored_anywhere_makes_the_same_rows() -> None:
         after = fold_all(second, batches[cut:], first=cut + 1)
         assert before + after == rows, f"cut after entry {cut}"
         assert second.last_row() == whole.last_row()
+
+
+def test_a_call_that_nobody_has_acknowledged_outlives_the_worker() -> None:
+    def said(t: float, state: AlarmState, text: str | None = None) -> list[AnyReading]:
+        return [Alarm(t=t, node="ff1", alarm="mayday", state=state, text=text)]
+
+    batches: list[list[AnyReading]] = [
+        said(10.0, "raised", "second floor"),
+        said(11.0, "cleared", "switched off"),
+        said(13.0, "raised", "leg broken"),
+        said(14.0, "acknowledged", "RIT: E7"),
+        said(16.0, "raised", "still here"),
+        said(17.0, "cleared"),
+        said(19.0, "acknowledged"),
+        [Status(t=21.0, node="ff1", battery=0.5)],
+    ]
+    rows = fold_all(IncidentFold("kirchhoff", SETTINGS), batches)
+    states = [[alarm.state for alarm in record.decode(row.record).alarms] for row in rows]
+    assert states == [["raised"], ["cleared"], ["raised"], ["acknowledged"], ["raised"], ["cleared"], []]
+    for cut in range(1, len(batches)):
+        first = IncidentFold("kirchhoff", SETTINGS)
+        before = fold_all(first, batches[:cut])
+        second = IncidentFold.restore(first.state(), "kirchhoff", SETTINGS)
+        assert before + fold_all(second, batches[cut:], first=cut + 1) == rows, f"cut after entry {cut}"
 
 
 def test_looking_at_the_picture_changes_nothing() -> None:

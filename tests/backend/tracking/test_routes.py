@@ -106,6 +106,28 @@ def test_before_the_first_reading_nothing_was_known(post: Post, walked: str) -> 
     assert post.frame(walked, t=1.0)["nodes"] == []
 
 
+def test_a_mayday_that_its_unit_cleared_unacknowledged_is_in_the_frames_until_a_person_answers(
+    post: Post,
+) -> None:
+    incident = post.open_incident("a mayday")
+    said = {"kind": "alarm", "node": "ff1", "alarm": "mayday"}
+    lunar = "Location: second floor. Name: Novak."
+    for t, state, text in (
+        (10.0, "raised", lunar),
+        (12.0, "cleared", "switched off"),
+        (15.0, "acknowledged", "RIT: E7"),
+    ):
+        post.telemetry(incident, state, [said | {"t": t, "state": state, "text": text}])
+    post.telemetry(incident, "later", [{"kind": "status", "t": 17.0, "node": "ff1", "battery": 0.5}])
+    assert post.frame(incident, min_seq=4)["alarms"] == []
+    eventually(lambda: [post.frame(incident, t=t)["seq"] for t in (11.0, 14.0, 16.0)] == [1, 2, 3])
+    shown = [(11.0, "raised", lunar), (14.0, "cleared", f"{lunar}\nswitched off")]
+    for t, state, text in shown:
+        alarms: Any = post.frame(incident, t=t)["alarms"]
+        assert [(alarm["state"], alarm["t"], alarm["text"]) for alarm in alarms] == [(state, 10.0, text)]
+    assert post.frame(incident, t=16.0)["alarms"] == []
+
+
 def points(post: Post, incident: str, node: str, **parameters: object) -> list[list[float]]:
     status, answer = get(post, incident, "tracks", node=node, **parameters)
     assert status == 200, answer
