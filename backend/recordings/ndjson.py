@@ -1,7 +1,11 @@
 """Recorded logs as NDJSON files: the lines that `GET …/log` gives go in, and come out again byte for byte."""
 
+import shutil
+import sys
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 
 import msgspec
 import sqlalchemy as sa
@@ -19,6 +23,8 @@ from backend.log.read import SqlLogReader
 
 MAX_READINGS = 10_000
 """The contract's limit of a batch: what was exported had passed it."""
+
+STANDARD_INPUT = Path("-")
 
 GROUP_BATCHES = 256
 GROUP_BYTES = 8 * 1024 * 1024
@@ -73,7 +79,7 @@ def import_log(
     Args:
         url: SQLAlchemy URL of the log's database; it is created or migrated where needed.
         name: of the incident.
-        path: of the file.
+        path: of the file; `-` is standard input.
         clock: of the incident.
         levels: its storeys.
         origin: of its local coordinates.
@@ -87,20 +93,33 @@ def import_log(
         Problem: the log refused a batch, for one because somebody has closed the incident meanwhile.
         LogUnwritable: the database cannot be written.
     """
-    total = sum(1 for _ in batches_in(path, "", clock))
-    prepare(url)
-    engine = make_engine(url)
-    try:
-        incident = IncidentStore(engine).create(name, clock, origin, levels).id
-        imported, written = Imported(incident=incident), 0
-        for group in _groups(batches_in(path, incident, clock)):
-            imported = imported.plus(_append(engine, group))
-            written += len(group)
-            if progress is not None:
-                progress(written, total)
-        return imported
-    finally:
-        engine.dispose()
+    with _readable_twice(path) as (file, said):
+        total = sum(1 for _ in batches_in(file, "", clock, said))
+        prepare(url)
+        engine = make_engine(url)
+        try:
+            incident = IncidentStore(engine).create(name, clock, origin, levels).id
+            imported, written = Imported(incident=incident), 0
+            for group in _groups(batches_in(file, incident, clock, said)):
+                imported = imported.plus(_append(engine, group))
+                written += len(group)
+                if progress is not None:
+                    progress(written, total)
+            return imported
+        finally:
+            engine.dispose()
+
+
+@contextmanager
+def _readable_twice(path: Path) -> Iterator[tuple[Path, str]]:
+    """A file to understand first and to store then, and what it is called: of a pipe, a copy on disk."""
+    if path != STANDARD_INPUT:
+        yield path, str(path)
+        return
+    with NamedTemporaryFile(prefix="firethread-", suffix=".ndjson") as copy:
+        shutil.copyfileobj(sys.stdin.buffer, copy)
+        copy.flush()
+        yield Path(copy.name), "standard input"
 
 
 def export_log(url: str, incident: str) -> Iterator[bytes]:
@@ -140,8 +159,14 @@ def find_incident(store: IncidentStore, name: str) -> Incident:
     raise NotFound(f"{what}: give one of these ids: {listed}.")
 
 
-def batches_in(path: Path, incident: str, clock: Clock) -> Iterator[NewBatch]:
+def batches_in(path: Path, incident: str, clock: Clock, said: str) -> Iterator[NewBatch]:
     """The lines of a file as batches of `incident`; empty lines are left out.
+
+    Args:
+        path: of the file.
+        incident: whose they become.
+        clock: of the incident.
+        said: what the file is called when one of its lines is refused.
 
     Raises:
         NotUnderstood: a line is no batch; the message names it.
@@ -155,7 +180,7 @@ def batches_in(path: Path, incident: str, clock: Clock) -> Iterator[NewBatch]:
                     yield _new_batch(parse_line(line), incident, clock)
                 except (NotUnderstood, TooLarge) as error:
                     raise type(error)(
-                        f"{path}, line {number}: {error.detail} Nothing was imported."
+                        f"{said}, line {number}: {error.detail} Nothing was imported."
                     ) from error
 
 

@@ -1,5 +1,7 @@
 """A recorded log goes in and comes out again byte for byte, on both databases."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import msgspec
@@ -53,6 +55,24 @@ def test_what_is_exported_and_imported_again_is_the_same(database_url: str, tmp_
     lines = [msgspec.json.decode(line) for line in first]
     assert [(line["seq"], line["received"]) for line in lines] == [(1, 7.5), (2, 9.5)]
     assert [fault["code"] for fault in lines[1]["rejected"]] == ["unknown_kind"]
+
+
+def piped(data: Path, log: bytes) -> subprocess.CompletedProcess[bytes]:
+    command = [sys.executable, "-m", "backend.cli", "import", "--data", str(data), "--incident", "Drill", "-"]
+    return subprocess.run(command, input=log, capture_output=True, check=False)
+
+
+def test_a_log_is_imported_from_a_pipe(tmp_path: Path) -> None:
+    done = piped(tmp_path, b"".join(EXPORTED))
+    assert done.returncode == 0, done.stderr
+    assert list(export_log(f"sqlite:///{tmp_path / 'firethread.db'}", "Drill")) == EXPORTED
+
+
+def test_a_pipe_with_a_line_that_is_no_batch_is_refused_by_that_line(tmp_path: Path) -> None:
+    refused = piped(tmp_path, EXPORTED[0] + b"{\n")
+    assert refused.returncode == 2
+    assert b"standard input, line 2: " in refused.stderr
+    assert not (tmp_path / "firethread.db").exists()
 
 
 def test_each_import_makes_an_incident_of_its_own(database_url: str, recording: Path) -> None:
