@@ -7,7 +7,7 @@ from importlib.metadata import version
 
 from fastapi import FastAPI
 
-from backend import openapi, problems
+from backend import api_docs, openapi, problems
 from backend.authentication import Authentication, session_router
 from backend.coordination.web_link import WebLink
 from backend.health import health_router
@@ -73,6 +73,7 @@ def build_app(settings: Settings, *, token: str | None, link: socket.socket, lin
         version=version("firethread"),
         description=DESCRIPTION,
         lifespan=lifespan,
+        docs_url=None,  # FastAPI's own loads from afar
         redoc_url=None,
     )
     problems.install(app)
@@ -96,6 +97,7 @@ def build_app(settings: Settings, *, token: str | None, link: socket.socket, lin
     ):
         app.include_router(router)
     openapi.install(app)
+    api_docs.install(app)
     app.mount("/", Screen(), name="screen")
     app.add_middleware(Authentication, token=token)
     return app

@@ -5,6 +5,7 @@ from typing import Any
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
+from backend.authentication import PROTECTED_PREFIX, SESSION_PATH, TOKEN_FILE
 from backend.errors import PROBLEM_MEDIA_TYPE
 from backend.ingest import openapi as telemetry
 from backend.live.frame import message_schemas
@@ -35,6 +36,20 @@ PROBLEM_SCHEMA: dict[str, Any] = {
         },
     },
 }
+
+
+ACCESS_SCHEMES: dict[str, Any] = {
+    "accessToken": {
+        "type": "http",
+        "scheme": "bearer",
+        "description": (
+            f"The access token of the deployment, from the file `{TOKEN_FILE}` of its data folder. "
+            f"A screen that has signed in (`POST {SESSION_PATH}`) carries a cookie instead."
+        ),
+    }
+}
+ACCESS: list[dict[str, list[str]]] = [{"accessToken": []}, {}]
+"""The token, or nothing: a server started with `--open` asks nobody."""
 
 
 def install(app: FastAPI) -> None:
@@ -84,4 +99,9 @@ def complete(document: dict[str, Any]) -> dict[str, Any]:
                         "content": {PROBLEM_MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}},
                     }
     document["paths"][telemetry.PATH] = {"post": telemetry.openapi_operation()}
+    document["components"]["securitySchemes"] = ACCESS_SCHEMES
+    for path, operations in document["paths"].items():
+        if path.startswith(PROTECTED_PREFIX) and path != SESSION_PATH:
+            for operation in operations.values():
+                operation["security"] = ACCESS
     return document

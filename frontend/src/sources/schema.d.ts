@@ -889,7 +889,7 @@ export interface components {
          *             clock_t: the same, under the name that says so.
          *             newest_t: the newest epoch folded, Unix seconds; null before the first reading.
          *             nodes: all nodes ever introduced.
-         *             alarms: alarms that have not been cleared.
+         *             alarms: alarms that stand.
          *             notices: the newest notices of the estimator.
          */
         Frame: {
@@ -961,14 +961,14 @@ export interface components {
         };
         /**
          * FrameAlarm
-         * @description An alarm that has not been cleared.
+         * @description An alarm that stands: until it is cleared, and a call for help until a person has acknowledged it too.
          *
          *         Attributes:
          *             node: whose alarm it is.
          *             alarm: which one.
-         *             state: raised, or acknowledged.
+         *             state: raised, acknowledged, or cleared before any person had acknowledged it.
          *             t: when it was raised, Unix seconds.
-         *             text: what was said.
+         *             text: what was said, by who raised it and by who answered, a line each.
          */
         FrameAlarm: {
             node: string;
