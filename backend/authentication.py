@@ -9,8 +9,10 @@ from urllib.parse import parse_qs
 from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.websockets import WebSocket
 
 from backend.errors import NotAuthenticated, Problem
+from backend.problems import deny
 
 COOKIE = "firethread"
 TOKEN_FILE = "access-token"  # noqa: S105 - the file's name, not a secret
@@ -68,8 +70,7 @@ class Authentication:
             f"the file `{TOKEN_FILE}` of the server's data folder"
         )
         if scope["type"] == "websocket":
-            await receive()
-            await send({"type": "websocket.close", "code": 4401, "reason": problem.title})
+            await deny(WebSocket(scope, receive, send), problem)
             return
         await send_problem(problem, send)
 

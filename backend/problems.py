@@ -5,10 +5,11 @@ from http import HTTPStatus
 
 import structlog
 from fastapi import FastAPI, Request
-from fastapi.exceptions import RequestValidationError
+from fastapi.exceptions import RequestValidationError, WebSocketRequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 from starlette.routing import compile_path
+from starlette.websockets import WebSocket
 
 from backend.errors import (
     Conflict,
@@ -58,6 +59,10 @@ def install(app: FastAPI) -> None:
     async def not_valid(_: Request, error: RequestValidationError) -> Response:
         return answer(from_validation(error.errors()))
 
+    @app.exception_handler(WebSocketRequestValidationError)
+    async def not_opened(socket: WebSocket, error: WebSocketRequestValidationError) -> None:
+        await deny(socket, from_validation(error.errors()))
+
     @app.exception_handler(HTTPException)
     async def by_status(request: Request, error: HTTPException) -> Response:
         kind = BY_STATUS.get(error.status_code, Problem)
@@ -90,6 +95,14 @@ def methods_of(request: Request) -> set[str]:
 def answer(problem: Problem) -> Response:
     """The HTTP response that a problem is."""
     return Response(problem.body(), problem.status, problem.headers())
+
+
+async def deny(socket: WebSocket, problem: Problem) -> None:
+    """Refuse a socket before it is open, in the form in which any request is refused.
+
+    Programs read the answer to the handshake; to a page a browser tells only that the socket did not open.
+    """
+    await socket.send_denial_response(answer(problem))
 
 
 def from_validation(faults: Sequence[dict[str, object]]) -> Problem:

@@ -4,7 +4,11 @@ from pathlib import Path
 
 from starlette.responses import PlainTextResponse, Response
 from starlette.staticfiles import StaticFiles
-from starlette.types import Scope
+from starlette.types import Receive, Scope, Send
+from starlette.websockets import WebSocket
+
+from backend.errors import NotFound
+from backend.problems import deny
 
 FOLDER = Path(__file__).parent / "screen"
 CONTENT_SECURITY_POLICY = (
@@ -19,6 +23,13 @@ class Screen(StaticFiles):
 
     def __init__(self) -> None:
         super().__init__(directory=FOLDER, html=True, check_dir=False)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer with a file; a socket that no route of the API takes ends here, as not found."""
+        if scope["type"] == "websocket":
+            await deny(WebSocket(scope, receive, send), NotFound(f"there is no socket at {scope['path']}"))
+            return
+        await super().__call__(scope, receive, send)
 
     async def get_response(self, path: str, scope: Scope) -> Response:
         """The file at a path, or a line that says how to build the screen."""

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import httpx2
 import pytest
-from websockets.exceptions import InvalidStatus
+from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 from backend.authentication import access_token
@@ -58,9 +58,22 @@ def test_a_screen_signs_in_once_and_is_known_by_its_cookie(guarded: Server) -> N
 
 def test_sockets_are_guarded_too(guarded: Server) -> None:
     address = guarded.url.replace("http", "ws") + "/api/v1/incidents/none/live"
-    with pytest.raises(InvalidStatus) as refused, connect(address):
-        pass
-    assert refused.value.response.status_code == 403
+    for guess in ("", "?token=guess", "?token=guess&after=abc"):
+        with pytest.raises(InvalidStatus) as refused, connect(address + guess):
+            pass
+        response = refused.value.response
+        assert (response.status_code, response.headers["content-type"]) == (401, "application/problem+json")
+        assert response.headers["www-authenticate"].startswith("Bearer")
+        assert b"access-token" in bytes(response.body)
+
+
+def test_a_program_may_name_the_token_in_a_socket_s_address(guarded: Server) -> None:
+    token = access_token(guarded.data)
+    with connect(f"{guarded.url.replace('http', 'ws')}/api/v1/incidents/none/live?token={token}") as socket:
+        with pytest.raises(ConnectionClosed) as closed:
+            socket.recv(timeout=5)
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == 4404
 
 
 def test_health_pages_and_the_screen_ask_for_no_token(guarded: Server) -> None:

@@ -6,8 +6,9 @@ import time
 from collections.abc import Iterator
 
 import pytest
-from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.exceptions import ConnectionClosed
 
+from tests.backend.refusing import assert_refused
 from tests.running import Post, Server, eventually, running
 from tests.watching import watching
 
@@ -69,9 +70,16 @@ def test_an_unknown_incident_is_told_as_such(server: Server) -> None:
     assert closed.value.rcvd.code == 4404
 
 
-def test_a_wrong_parameter_opens_no_socket(server: Server) -> None:
-    with pytest.raises(InvalidStatus), watching(server.url, "/incidents/nobody/live?after=-1"):
-        pass
+@pytest.mark.parametrize(
+    ("path", "status", "said"),
+    [
+        ("/incidents/nobody/live?after=-1", 422, "query.after"),
+        ("/incidents/nobody/live?after=abc", 422, "query.after"),
+        ("/incidents/nobody/life", 404, "/api/v1/incidents/nobody/life"),
+    ],
+)
+def test_a_socket_that_is_refused_is_told_why(server: Server, path: str, status: int, said: str) -> None:
+    assert_refused(server, path, status, said)
 
 
 def test_a_closed_incident_shows_its_last_frame_and_beats_on(server: Server, post: Post) -> None:
