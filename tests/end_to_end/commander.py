@@ -4,7 +4,7 @@ import re
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from urllib.parse import quote
+from urllib.parse import quote, urlencode
 
 from playwright.sync_api import Locator, Page
 
@@ -103,6 +103,29 @@ class Commander:
         self.page.get_by_test_id("responder").first.wait_for()
         return time.monotonic() - began
 
+    def follows_link(self, url: str, incident: str, **what: str | float) -> None:
+        """Open the screen by a link to what is in an incident: `node`, `level`, `t`."""
+        fields = {"incident": incident, **what}
+        self.page.goto(f"{url}/#{urlencode(fields)}")
+        self.page.get_by_test_id("responder").first.wait_for()
+
+    def reloads(self) -> None:
+        """Load the page again."""
+        self.page.reload()
+        self.page.get_by_test_id("responder").first.wait_for()
+
+    @property
+    def incident(self) -> str:
+        """The name of the incident that is chosen."""
+        chosen = self.page.get_by_test_id("incident-chooser").locator("option:checked").inner_text()
+        return chosen.split(" · ")[0].strip()
+
+    def chooses_incident(self, name: str) -> None:
+        """Choose another incident; of those with the same name the newest."""
+        chooser = self.page.get_by_test_id("incident-chooser")
+        wanted = chooser.locator("option").filter(has_text=name).first.get_attribute("value")
+        chooser.select_option(wanted)
+
     def board(self) -> dict[str, BoardRow]:
         """The accountability board: callsign to status word, age, level and error."""
         rows: dict[str, list[str]] = self.page.evaluate(
@@ -171,6 +194,15 @@ class Commander:
         """The texts of the alarm banners."""
         return [" ".join(text.split()) for text in self.page.get_by_test_id("alarm").all_inner_texts()]
 
+    @property
+    def alarm_words(self) -> str:
+        """Everything said of alarms, also of what could not be sent."""
+        return " ".join(self.page.get_by_test_id("alarms").inner_text().split())
+
+    def goes_to_the_alarm(self) -> None:
+        """Press the first alarm's banner beside its buttons."""
+        self.page.get_by_test_id("alarm").first.get_by_role("button").first.click()
+
     def acknowledges(self) -> None:
         """Acknowledge the first alarm."""
         self._alarm_button("Acknowledge").click()
@@ -184,12 +216,12 @@ class Commander:
 
     @property
     def connection_lost(self) -> bool:
-        """Whether the sign of the lost connection lies over the map."""
+        """Whether the sign of the lost connection is shown."""
         return self.page.get_by_test_id("connection-lost").is_visible()
 
     @property
     def mode(self) -> str:
-        """LIVE or REPLAY."""
+        """LIVE, REPLAY, CLOSED, or NOT LIVE."""
         return self.page.get_by_test_id("clock").locator(".mode").inner_text()
 
     @property
@@ -210,6 +242,51 @@ class Commander:
     def plays(self) -> None:
         """Press play, or pause."""
         self.page.get_by_test_id("play").click()
+
+    @property
+    def newest_button(self) -> str:
+        """The words on the button back to live."""
+        return self.page.get_by_test_id("back-to-live").inner_text()
+
+    @property
+    def event_marks(self) -> list[str]:
+        """The words of the marks on the timeline, in their order."""
+        marks: list[str] = self.page.get_by_test_id("timeline").evaluate(
+            "(bar) => [...bar.querySelectorAll('.marks i')].map((mark) => mark.title.replace(/^\\S+ /, ''))"
+        )
+        return marks
+
+    @property
+    def trouble(self) -> str:
+        """What the top bar says went wrong; nothing if nothing did."""
+        said = self.page.locator("header [role=status]")
+        return said.inner_text() if said.count() else ""
+
+    def sits_at_a_tablet(self) -> None:
+        """Use a screen of 1024 x 768."""
+        self.page.set_viewport_size({"width": 1024, "height": 768})
+
+    @property
+    def off_the_screen(self) -> list[str]:
+        """What reaches beyond the right edge of the screen."""
+        found: list[str] = self.page.evaluate(
+            """() => [...document.querySelectorAll('#app *')].filter((part) => !part.closest('.unseen')
+              && part.getBoundingClientRect().right > document.documentElement.clientWidth + 1)
+              .map((part) => `${part.tagName} ${part.className} ${part.textContent.trim().slice(0, 30)}`)"""
+        )
+        wide = self.page.evaluate(
+            "document.scrollingElement.scrollWidth - document.scrollingElement.clientWidth"
+        )
+        return found + ([f"the page is {wide} px too wide"] if wide > 0 else [])
+
+    @property
+    def card_left(self) -> float:
+        """Where the card begins (CSS pixels from the left of the map)."""
+        card = self.page.get_by_test_id("card").bounding_box()
+        assert card is not None
+        map_box = self.page.get_by_test_id("map").bounding_box()
+        assert map_box is not None
+        return card["x"] - map_box["x"]
 
     def goes_back_to_live(self) -> None:
         """Press the button back to live."""

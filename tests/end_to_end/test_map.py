@@ -104,6 +104,69 @@ def test_a_storey_button_leaves_the_others_as_shadows(
     assert set(commander.board()) == {"LOW", "HIGH"}
 
 
+def test_who_is_in_alarm_is_no_shadow_on_any_storey(server: Server, post: Post, commander: Commander) -> None:
+    levels = [{"level": 0, "name": "Ground", "up_m": 0.0}, {"level": 1, "name": "First", "up_m": 3.0}]
+    incident = post.open_incident(levels=levels)
+    heard(
+        post,
+        incident,
+        base(T0),
+        responder(T0, "low", "A", [-5, 3, 0], sigma_m=0.2),
+        responder(T0, "high", "B", [5, 3, 3], sigma_m=0.2),
+        responder(T0, "in-trouble", "C", [0, 3, 3], sigma_m=0.2),
+        alarm(T0, "in-trouble"),
+    )
+    commander.opens(server.url, incident)
+    commander.chooses_storey("Ground")
+    eventually(lambda: commander.colour(SECOND_CREW).count == 0)
+    assert commander.colour(THIRD_CREW).count > 100
+
+
+def test_on_a_tablet_the_card_does_not_lie_over_the_one_it_is_about(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    heard(
+        post,
+        incident,
+        base(T0),
+        responder(T0, "west", "A", [-20, 3, 0]),
+        responder(T0, "in-trouble", "B", [20, -6, 0]),
+        alarm(T0, "in-trouble"),
+    )
+    commander.sits_at_a_tablet()
+    commander.opens(server.url, incident)
+    commander.turns_trails_off()
+    eventually(lambda: commander.banners)
+    commander.settled_mark(SECOND_CREW)
+    commander.goes_to_the_alarm()
+    eventually(lambda: "IN-TROUBLE" in commander.card)
+    eventually(lambda: commander.settled_mark(SECOND_CREW).right < commander.card_left - 6)
+
+    # Nor does it once everybody is fitted into the map.
+    commander.presses("f")
+    assert commander.settled_mark(SECOND_CREW).right < commander.card_left - 6
+    assert commander.settled_mark(FIRST_CREW).count > 100
+
+
+def test_the_ellipse_of_a_sure_fix_shows_around_its_mark(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    heard(
+        post,
+        incident,
+        base(T0),
+        responder(T0, "sure", "A", [0, 4, 0], sigma_m=0.01),
+        responder(T0, "west", "B", [-40, -2, 0], sigma_m=0.1),
+        responder(T0, "east", "C", [40, -2, 0], sigma_m=0.1),
+    )
+    commander.opens(server.url, incident)
+    commander.turns_trails_off()
+    mark = commander.settled_mark(FIRST_CREW)
+    assert commander.colour(FIRST_CREW, tolerance=24).height > mark.height + 8
+
+
 def test_the_first_picture_comes_soon_without_webgl_and_from_this_server_alone(
     server: Server, post: Post, commander: Commander
 ) -> None:

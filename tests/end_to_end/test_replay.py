@@ -83,3 +83,28 @@ def test_a_mayday_stands_before_a_commander_who_watches_the_past(
     eventually(lambda: commander.banners, within_s=3)
     assert "MAYDAY WALKER" in commander.banners[0]
     assert commander.mode == "REPLAY"
+
+
+def test_an_alarm_says_where_the_responder_is_now_also_before_who_watches_the_past(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    levels = [{"level": 0, "name": "Ground", "up_m": 0.0}, {"level": 1, "name": "First", "up_m": 3.0}]
+    incident = post.open_incident(levels=levels)
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0], sigma_m=0.2))
+    for second in range(1, 9):
+        heard(post, incident, step(T0 + second, "walker", [0.3, 0, 0.4]))
+    recorded(post, incident, T0 + 8)
+    commander.opens(server.url, incident)
+    eventually(lambda: "First" in commander.board()["WALKER"].level)
+    commander.scrubs_to(T0 + 1)
+    eventually(lambda: commander.mode == "REPLAY" and commander.board())
+    assert "Ground" in commander.board()["WALKER"].level
+
+    heard(post, incident, alarm(T0 + 10, "walker"))
+    eventually(lambda: commander.banners, within_s=3)
+    assert "First" in commander.banners[0]
+    assert "Ground" in commander.board()["WALKER"].level
+
+    commander.goes_to_the_alarm()
+    eventually(lambda: commander.mode == "LIVE")
+    eventually(lambda: commander.selected == "walker" and "First" in commander.card)

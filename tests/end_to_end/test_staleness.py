@@ -3,7 +3,7 @@
 import time
 
 from tests.end_to_end.commander import FIRST_CREW, Commander
-from tests.end_to_end.scene import base, heard, responder
+from tests.end_to_end.scene import base, heard, responder, step
 from tests.running import Post, Server, eventually
 
 
@@ -29,6 +29,5 @@ def test_a_responder_who_falls_silent_turns_stale_then_lost_in_word_and_shape(
     eventually(lambda: commander.shape(FIRST_CREW) == "square", within_s=2)
     assert commander.counts == "1 inside 0 live 0 stale 1 lost"
 
-    now = time.time()
-    heard(post, incident, responder(now, "quiet", "A", [3, 3, 0]))
+    heard(post, incident, step(time.time(), "quiet", [0, 0, 0]))
     commander.sees("QUIET", "Live", within_s=2)

@@ -5,6 +5,8 @@ import type { DeltaMessage, FrameMessage, HeartbeatMessage } from "../domain/typ
 import { type LinkState, NOT_CONNECTED, type Source } from "../sources/source";
 
 const STANDING: IncidentClock = { t: 0, localMs: 0, rate: 0 };
+/** A link that has just been begun is not lost yet (ms). */
+const PATIENCE_MS = 1500;
 
 export interface FeedOwner {
   /** Incident seconds per local second, between two messages. */
@@ -13,6 +15,8 @@ export interface FeedOwner {
   changed(message: FrameMessage | DeltaMessage): void;
   heartbeat(message: HeartbeatMessage): void;
   lost(): void;
+  /** The link is open again after it was lost. */
+  back(): void;
 }
 
 export class Feed {
@@ -20,12 +24,14 @@ export class Feed {
   link = $state.raw<LinkState>(NOT_CONNECTED);
   clock = $state.raw<IncidentClock>(STANDING);
   private source: Source | null = null;
+  private begunMs = $state.raw(Number.POSITIVE_INFINITY);
 
   constructor(private readonly owner: FeedOwner) {}
 
   follow(source: Source): void {
     this.leave();
     this.source = source;
+    this.begunMs = performance.now();
     source.subscribe({
       frame: (message, t) => this.take(message, pictureOf(message), t),
       delta: (message, t) => {
@@ -37,11 +43,18 @@ export class Feed {
         this.keepTime(t);
       },
       state: (link) => {
-        const justLost = link.link === "lost" && this.link.link !== "lost";
+        const before = this.link.link;
         this.link = link;
-        if (justLost) this.owner.lost();
+        if (link.link === "lost" && before !== "lost") this.owner.lost();
+        if (link.link === "open" && before === "lost") this.owner.back();
       },
     });
+  }
+
+  /** Whether nothing is heard of it at local time `localMs`. */
+  isLost(localMs: number): boolean {
+    if (this.link.link === "connecting") return localMs - this.begunMs > PATIENCE_MS;
+    return this.link.link === "lost";
   }
 
   /** Forgets the source and what it showed. */
@@ -51,6 +64,7 @@ export class Feed {
     this.picture = null;
     this.link = NOT_CONNECTED;
     this.clock = STANDING;
+    this.begunMs = Number.POSITIVE_INFINITY;
   }
 
   /** Incident time is `t` now, and goes on from there. */

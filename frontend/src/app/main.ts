@@ -1,5 +1,5 @@
 import { mount } from "svelte";
-import { takeToken } from "../domain/deep-link";
+import { parseDeepLink, takeToken } from "../domain/deep-link";
 import { signIn } from "../sources/api";
 import "../ui/base.css";
 import App from "./App.svelte";
@@ -14,6 +14,8 @@ if (token !== null) {
   await signIn(token).catch(() => undefined); // a wrong token leads to the sign-in, like none
 }
 
-const screen = new Screen();
+// Read before anything writes the address.
+const screen = new Screen(parseDeepLink(window.location.hash));
+window.addEventListener("hashchange", () => void screen.follow(parseDeepLink(window.location.hash)));
 mount(App, { target, props: { screen } });
 void screen.begin();

@@ -1,11 +1,11 @@
 /** The accountability board: every responder by crew, in the order that does not jump about. */
 
 import { ce95 } from "./ellipse";
-import { levelOf, SURE_P } from "./levels";
+import { storeyUnsure, storeyWords } from "./levels";
 import type { Picture } from "./picture";
 import { ageS, covarianceAt, type StalenessLimits, statusAt } from "./staleness";
 import type { FrameAlarm, FrameNode, Level, Status } from "./types";
-import { alarmWord, levelWords, nameOf, percent, statusWord } from "./words";
+import { alarmWord, nameOf, statusWord } from "./words";
 
 export interface BoardRow {
   readonly node: string;
@@ -53,15 +53,13 @@ export function board(
     const status = statusAt(state, now, limits);
     const covariance = covarianceAt(sighting, now);
     const alarm = alarms.get(state.node);
-    const unsure = state.level_p != null && state.level_p < SURE_P;
-    const level = levelWords(levelOf(state, levels), levels);
     const row: BoardRow = {
       node: state.node,
       name: nameOf(state),
       status,
       statusWord: statusWord(status),
-      level: unsure && state.level_p != null ? `${level}, ${percent(state.level_p)}` : level,
-      levelUnsure: unsure,
+      level: storeyWords(state, levels),
+      levelUnsure: storeyUnsure(state),
       age_s: ageS(state, now),
       error_m: covariance && ce95(covariance),
       air_bar: state.air_bar ?? null,

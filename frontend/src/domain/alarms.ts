@@ -1,4 +1,4 @@
-/** Alarms stand until a person has acknowledged and cleared them; silence is neither. */
+/** Alarms stand until a person has acknowledged them and they are cleared; silence is neither. */
 import type { FrameAlarm } from "./types";
 
 export interface StandingAlarm {
@@ -15,49 +15,32 @@ export function alarmKey(alarm: Pick<FrameAlarm, "node" | "alarm">): string {
 }
 
 /**
- * The alarms that stand after the server's list has changed.
- *
- * One that a unit clears by itself before any person has acknowledged it stands on, as cleared; one
- * that was acknowledged and is then cleared, or no longer listed, is over. An alarm raised anew
- * (a later `t` in state raised) begins again.
+ * The alarms that stand, as the server lists them: also one that its unit has cleared by itself
+ * before any person had acknowledged it.
  */
-export function standingAlarms(before: StandingAlarms, listed: readonly FrameAlarm[]): StandingAlarms {
-  const after = new Map<string, StandingAlarm>();
-  const present = new Map(listed.map((alarm) => [alarmKey(alarm), alarm]));
-  for (const [key, alarm] of present) {
-    const known = before.get(key);
-    const raisedAnew = alarm.state === "raised";
-    const acknowledged = alarm.state === "acknowledged" || (!raisedAnew && (known?.acknowledged ?? false));
-    const cleared = alarm.state === "cleared";
-    // Cleared before this screen ever saw it raised: nothing to show.
-    if (cleared && (known === undefined || acknowledged)) continue;
-    after.set(key, { alarm, acknowledged, cleared });
-  }
-  for (const [key, known] of before) {
-    if (!present.has(key) && !known.acknowledged) after.set(key, { ...known, cleared: true });
-  }
-  return after;
+export function standingAlarms(listed: readonly FrameAlarm[]): StandingAlarms {
+  return new Map(
+    listed.map((alarm) => [
+      alarmKey(alarm),
+      { alarm, acknowledged: alarm.state === "acknowledged", cleared: alarm.state === "cleared" },
+    ]),
+  );
 }
 
 /** The alarms that stand after a person's word on one of them has reached the log. */
 export function answered(
   before: StandingAlarms,
   alarm: FrameAlarm,
-  states: readonly FrameAlarm["state"][],
+  state: FrameAlarm["state"],
 ): StandingAlarms {
   const after = new Map(before);
   const known = after.get(alarmKey(alarm));
   if (known === undefined) return before;
-  const acknowledged = known.acknowledged || states.includes("acknowledged");
-  const cleared = known.cleared || states.includes("cleared");
+  const acknowledged = known.acknowledged || state === "acknowledged";
+  const cleared = known.cleared || state === "cleared";
   if (acknowledged && cleared) after.delete(alarmKey(alarm));
   else after.set(alarmKey(alarm), { ...known, acknowledged, cleared });
   return after;
-}
-
-/** The reading states to post when a person acknowledges: a unit's own clearing is confirmed at once. */
-export function statesToAcknowledge(standing: StandingAlarm): FrameAlarm["state"][] {
-  return standing.cleared ? ["acknowledged", "cleared"] : ["acknowledged"];
 }
 
 const URGENCY: Record<FrameAlarm["alarm"], number> = { mayday: 0, evacuate: 1, pass: 2, help: 3 };

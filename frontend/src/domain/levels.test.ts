@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { levelButtons, levelOf, neighbourLevel } from "./levels";
+import { levelButtons, levelOf, neighbourLevel, storeyWords } from "./levels";
 import { aNode, pictureWith, STOREYS } from "./samples";
 
 test("the estimator's word on the storey stands before the height", () => {
@@ -20,6 +20,18 @@ test.each([
 test("without a position or without storeys the level is unknown", () => {
   expect(levelOf(aNode({ position_m: null }), STOREYS)).toBeNull();
   expect(levelOf(aNode(), [])).toBeNull();
+});
+
+test.each([
+  [0.64, "Level 1, 64 %"],
+  [0.93, "Level 1"],
+  [null, "Level 1"],
+])("a storey of probability %s is said as %s", (level_p, words) => {
+  expect(storeyWords(aNode({ level: 1, level_p }), STOREYS)).toBe(words);
+});
+
+test("an unknown storey says so", () => {
+  expect(storeyWords(aNode({ position_m: null }), STOREYS)).toBe("level unknown");
 });
 
 const picture = pictureWith(

@@ -1,12 +1,13 @@
 /** Storeys: on which one a node is, which there are, how many responders each holds. */
 import type { Picture } from "./picture";
 import type { FrameNode, Level } from "./types";
+import { levelWords, percent } from "./words";
 
 /** The storey shown: one, or all of them. */
 export type LevelChoice = number | "all";
 
 /** Below this probability the storey is said with it. */
-export const SURE_P = 0.95;
+export const SURE_P = 0.9;
 
 /** A node this far above a storey's floor still belongs to it rather than to the next (m). */
 const BELOW_FLOOR_M = 0.8;
@@ -21,6 +22,17 @@ export function levelOf(node: FrameNode, levels: readonly Level[]): number | nul
     if (level.up_m <= up_m + BELOW_FLOOR_M && (best === null || level.up_m > best.up_m)) best = level;
   }
   return (best ?? levels.reduce((low, level) => (level.up_m < low.up_m ? level : low))).level;
+}
+
+/** Whether the storey is one among several that it may be. */
+export function storeyUnsure(node: FrameNode): boolean {
+  return node.level_p != null && node.level_p < SURE_P;
+}
+
+/** The node's storey as it is said: "First floor", and "First floor, 64 %" where it is not sure. */
+export function storeyWords(node: FrameNode, levels: readonly Level[]): string {
+  const words = levelWords(levelOf(node, levels), levels);
+  return node.level_p != null && storeyUnsure(node) ? `${words}, ${percent(node.level_p)}` : words;
 }
 
 export interface LevelButton {

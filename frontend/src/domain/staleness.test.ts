@@ -1,6 +1,6 @@
 import { describe, expect, test } from "vitest";
 import { aNode, anIncident, NOON } from "./samples";
-import { ageS, covarianceAt, DEFAULT_LIMITS, limitsOf, statusAt } from "./staleness";
+import { ageS, covarianceAt, DEFAULT_LIMITS, limitsOf, statusAt, whileUnheard } from "./staleness";
 
 describe("the status of a fix", () => {
   test.each([
@@ -35,6 +35,14 @@ describe("the status of a fix", () => {
     expect(statusAt(aNode(), NOON + 4, limits)).toBe("stale");
     expect(limits.lostAfterS).toBe(DEFAULT_LIMITS.lostAfterS);
   });
+});
+
+test("while the server is not heard no responder is live, however new the fix; who is lost stays lost", () => {
+  const limits = whileUnheard(DEFAULT_LIMITS);
+  expect(statusAt(aNode(), NOON, limits)).toBe("stale");
+  expect(statusAt(aNode(), NOON + 61, limits)).toBe("lost");
+  expect(statusAt(aNode({ status: "retired" }), NOON, limits)).toBe("retired");
+  expect(statusAt(aNode({ role: "breadcrumb" }), NOON, limits)).toBe("live");
 });
 
 test("an age is never negative, however the clocks differ", () => {

@@ -39,6 +39,11 @@ export function limitsOf(incident: Incident | null): StalenessLimits {
   };
 }
 
+/** The limits while the server cannot be heard: nobody who moves is live, however new the last fix is. */
+export function whileUnheard(limits: StalenessLimits): StalenessLimits {
+  return { ...limits, staleAfterS: -1 };
+}
+
 export function isMoving(role: Role): boolean {
   return role === "responder" || role === "uav";
 }

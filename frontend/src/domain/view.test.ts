@@ -86,9 +86,13 @@ describe("fitting", () => {
   });
 });
 
-test("the map moves to a selected node only if it is off the map", () => {
+test("the map moves to a selected node only if something covers it, and then to the middle of what is free", () => {
   expect(views.bringIntoView(view, 10, -5, margins)).toBe(view);
-  expect(views.bringIntoView(view, 500, 0, margins)).toMatchObject({ east_m: 500, north_m: 0 });
+  const moved = views.bringIntoView(view, 500, 0, margins);
+  expect(moved.pixelsPerMetre).toBe(view.pixelsPerMetre);
+  const [x, y] = views.toScreen(moved, 500, 0);
+  expect(x).toBeCloseTo((margins.left + view.width - margins.right) / 2);
+  expect(y).toBeCloseTo((margins.top + view.height - margins.bottom) / 2);
 });
 
 test("bounds hold every position, and there are none of nothing", () => {

@@ -129,7 +129,7 @@ export function fitsWell(view: View, bounds: Bounds, margins: Margins): boolean 
   return inside && view.pixelsPerMetre > best.pixelsPerMetre * 0.6;
 }
 
-/** Moves the view so that a place lies inside the margins; unchanged where it does already. */
+/** Moves the view so that a place lies in the middle between the margins; unchanged where it lies inside already. */
 export function bringIntoView(view: View, e_m: number, n_m: number, margins: Margins): View {
   const [x, y] = toScreen(view, e_m, n_m);
   const inside =
@@ -137,7 +137,9 @@ export function bringIntoView(view: View, e_m: number, n_m: number, margins: Mar
     x <= view.width - margins.right &&
     y >= margins.top &&
     y <= view.height - margins.bottom;
-  return inside ? view : { ...view, east_m: e_m, north_m: n_m };
+  if (inside) return view;
+  const centred = { ...view, east_m: e_m, north_m: n_m };
+  return pan(centred, (margins.left - margins.right) / 2, (margins.top - margins.bottom) / 2);
 }
 
 function clampScale(pixelsPerMetre: number): number {

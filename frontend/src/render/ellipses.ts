@@ -1,12 +1,14 @@
 /** How sure each fix is: the filled and bordered 95 % ellipse, never a fade, never too small to see. */
 import { markOf } from "../domain/crews";
 import { ellipseOf } from "../domain/ellipse";
-import { covarianceAt, statusAt } from "../domain/staleness";
+import { covarianceAt, isMoving, statusAt } from "../domain/staleness";
 import type { Status } from "../domain/types";
 import type { Layer, Placed, Scene } from "./layer";
-import { movers, radios } from "./place";
+import { markReach, movers, radios } from "./place";
 
-const LEAST_PX = 9;
+/** However sure the fix is, its ellipse shows this far outside the mark (px). */
+const LEAST_OUTSIDE_PX = 5;
+const LEAST_AROUND_RADIO_PX = 12;
 /** Dash of the border by status: whole, broken, dotted. */
 export const DASHES: Record<Status, number[]> = { live: [], stale: [9, 5], lost: [2, 6], retired: [1, 8] };
 
@@ -27,12 +29,13 @@ function draw(context: CanvasRenderingContext2D, scene: Scene, { node, x, y }: P
   if (!covariance) return;
   const { major_m, minor_m, angle_rad } = ellipseOf(covariance);
   const selected = node.node === scene.selected;
+  const least = isMoving(node.role) ? markReach(scene, node) + LEAST_OUTSIDE_PX : LEAST_AROUND_RADIO_PX;
   context.beginPath();
   context.ellipse(
     x,
     y,
-    Math.max(LEAST_PX, major_m * scene.view.pixelsPerMetre),
-    Math.max(LEAST_PX, minor_m * scene.view.pixelsPerMetre),
+    Math.max(least, major_m * scene.view.pixelsPerMetre),
+    Math.max(least, minor_m * scene.view.pixelsPerMetre),
     -angle_rad,
     0,
     2 * Math.PI,

@@ -1,22 +1,14 @@
 /** Who it is and how old the fix is, beside each responder, where there is room. */
-import { levelOf } from "../domain/levels";
-import { ageS, statusAt } from "../domain/staleness";
-import { alarmWord, levelWords, nameOf, shortAge, statusWord } from "../domain/words";
-import type { Layer, Placed, Scene } from "./layer";
-import { movers } from "./place";
-import { RADIUS } from "./responders";
+import { labelLines } from "../domain/label";
+import type { View } from "../domain/view";
+import type { Box, Layer, Placed, Scene } from "./layer";
+import { markReach, movers, RADIUS } from "./place";
 
 const LINE_PX = 16;
 const PADDING = 5;
+const BESIDE_PX = 6;
 const NAME_FONT = "600 14px system-ui, sans-serif";
 const MOST_WIDTHS = 4000;
-
-interface Box {
-  readonly x: number;
-  readonly y: number;
-  readonly width: number;
-  readonly height: number;
-}
 
 const widths = new Map<string, number>();
 
@@ -38,18 +30,23 @@ export const labels: Layer = {
     context.textAlign = "left";
     context.textBaseline = "top";
     const everybody = movers(scene);
-    // A label may cover nobody's mark.
+    // A label may cover nobody's mark, nor lie under what lies over the map.
     const taken: Box[] = everybody.flatMap(({ x, y, elsewhere }) =>
       elsewhere ? [] : [{ x: x - RADIUS, y: y - RADIUS, width: 2 * RADIUS, height: 2 * RADIUS }],
     );
+    taken.push(...scene.covered);
     // Whoever matters most is labelled first, and always.
     for (const place of everybody.reverse()) {
-      if (place.elsewhere || place.node.status === "retired") continue;
       const urgent = place.node.node === scene.selected || scene.alarms.has(place.node.node);
-      const lines = words(scene, place);
+      if ((place.elsewhere && !urgent) || place.node.status === "retired") continue;
+      const lines = labelLines(place.node, scene);
+      const away = markReach(scene, place.node) + BESIDE_PX;
       const width = Math.max(...lines.map((line) => widthOf(context, line))) + 2 * PADDING;
+      const height = lines.length * LINE_PX + PADDING;
+      const places = around(place, away, width, height).filter((box) => inside(box, scene.view));
+      const free = (all: readonly Box[]) => places.find((box) => !all.some((other) => overlap(box, other)));
       const box =
-        room(place, width, lines.length * LINE_PX + PADDING, taken) ?? (urgent ? beside(place, width) : null);
+        free(taken) ?? (urgent ? (free(scene.covered) ?? beside(place, away, width, height)) : null);
       if (box === null) continue;
       taken.push(box);
       write(context, scene, place, lines, box);
@@ -58,23 +55,9 @@ export const labels: Layer = {
   },
 };
 
-function words(scene: Scene, { node }: Placed): string[] {
-  const status = statusAt(node, scene.now, scene.limits);
-  const alarm = scene.alarms.get(node.node);
-  const age = shortAge(ageS(node, scene.now));
-  const lines = [alarm ? `${nameOf(node)} ${alarmWord(alarm.alarm)}` : nameOf(node)];
-  lines.push(status === "live" ? age : `${statusWord(status).toUpperCase()} ${age}`);
-  const level = levelOf(node, scene.levels);
-  if (scene.level === "all" && level !== null && node.role !== "uav" && lines[1] !== undefined) {
-    lines[1] += ` · ${levelWords(level, scene.levels)}`;
-  }
-  return lines;
-}
-
-/** A free place at the right, left, below or above, then at the corners; null where there is none. */
-function room({ x, y }: Placed, width: number, height: number, taken: readonly Box[]): Box | null {
-  const away = RADIUS + 6;
-  const places: Box[] = [
+/** Where a label may go, the best first: at the right, left, below or above, then at the corners. */
+function around({ x, y }: Placed, away: number, width: number, height: number): Box[] {
+  return [
     { x: x + away, y: y - height / 2, width, height },
     { x: x - away - width, y: y - height / 2, width, height },
     { x: x - width / 2, y: y + away, width, height },
@@ -84,11 +67,15 @@ function room({ x, y }: Placed, width: number, height: number, taken: readonly B
     { x: x - away - width, y: y + away / 2, width, height },
     { x: x - away - width, y: y - away / 2 - height, width, height },
   ];
-  return places.find((box) => !taken.some((other) => overlap(box, other))) ?? null;
 }
 
-function beside({ x, y }: Placed, width: number): Box {
-  return { x: x + RADIUS + 6, y: y - LINE_PX, width, height: 2 * LINE_PX + PADDING };
+/** Where nothing is free and the label must be seen all the same. */
+function beside({ x, y }: Placed, away: number, width: number, height: number): Box {
+  return { x: x + away, y: y - height / 2, width, height };
+}
+
+function inside({ x, y, width, height }: Box, view: View): boolean {
+  return x >= 0 && y >= 0 && x + width <= view.width && y + height <= view.height;
 }
 
 function overlap(a: Box, b: Box): boolean {

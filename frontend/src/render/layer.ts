@@ -24,6 +24,16 @@ export interface Scene {
   readonly trails: Trails;
   /** Length of the trails shown (s); 0 hides them. */
   readonly trail_s: number;
+  /** What lies over the map: no label goes there. */
+  readonly covered: readonly Box[];
+}
+
+/** A rectangle of the map (CSS pixels). */
+export interface Box {
+  readonly x: number;
+  readonly y: number;
+  readonly width: number;
+  readonly height: number;
 }
 
 export interface Layer {
@@ -35,6 +45,6 @@ export interface Placed {
   readonly node: FrameNode;
   readonly x: number;
   readonly y: number;
-  /** It is on a storey that is not the chosen one. */
+  /** It is on a storey that is not the chosen one, and in no alarm: it is only a shadow. */
   readonly elsewhere: boolean;
 }

@@ -1,9 +1,16 @@
 /** Where nodes are drawn, and which one a finger means. */
 import { levelOf } from "../domain/levels";
-import { isMoving } from "../domain/staleness";
+import { isMoving, statusAt } from "../domain/staleness";
+import type { FrameNode } from "../domain/types";
 import { toScreen } from "../domain/view";
 import type { Placed, Scene } from "./layer";
 
+/** Of a responder's mark (CSS pixels). */
+export const RADIUS = 13;
+/** Of the broken edge around a stale one, of the red under one in alarm, of the ring around the chosen one. */
+export const STALE_RADIUS = 20;
+export const ALARM_RADIUS = 21;
+export const CHOSEN_RADIUS = 24;
 /** Nodes this far outside the map are not drawn (CSS pixels). */
 const BEYOND = 60;
 /** A finger in a glove: half of a 44 px target. */
@@ -15,15 +22,16 @@ const placedOf = new WeakMap<Scene, readonly Placed[]>();
 export function placed(scene: Scene): readonly Placed[] {
   const known = placedOf.get(scene);
   if (known !== undefined) return known;
-  const { view, level, levels, picture } = scene;
+  const { view, level, levels, picture, alarms } = scene;
   const all: Placed[] = [];
   for (const { state: node } of picture?.nodes.values() ?? []) {
     if (node.position_m == null) continue;
     const [x, y] = toScreen(view, node.position_m[0], node.position_m[1]);
     if (x < -BEYOND || y < -BEYOND || x > view.width + BEYOND || y > view.height + BEYOND) continue;
     const on = level === "all" ? level : levelOf(node, levels);
-    // What flies outside belongs to every storey.
-    all.push({ node, x, y, elsewhere: node.role !== "uav" && on !== null && on !== level });
+    // What flies outside belongs to every storey, and who is in alarm concerns whoever looks at another one.
+    const everywhere = node.role === "uav" || alarms.has(node.node);
+    all.push({ node, x, y, elsewhere: !everywhere && on !== null && on !== level });
   }
   placedOf.set(scene, all);
   return all;
@@ -35,6 +43,13 @@ export function movers(scene: Scene): Placed[] {
   return placed(scene)
     .filter(({ node }) => isMoving(node.role))
     .sort((a, b) => rank(a) - rank(b));
+}
+
+/** How far from its place a responder's mark goes, with the rings that alarm and choice put around it (CSS pixels). */
+export function markReach(scene: Scene, node: FrameNode): number {
+  if (node.node === scene.selected) return CHOSEN_RADIUS + 2;
+  if (scene.alarms.has(node.node)) return ALARM_RADIUS;
+  return statusAt(node, scene.now, scene.limits) === "stale" ? STALE_RADIUS : RADIUS;
 }
 
 /** Nodes that stand. */

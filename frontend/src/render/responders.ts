@@ -2,11 +2,11 @@
 import { markOf } from "../domain/crews";
 import { statusAt } from "../domain/staleness";
 import type { Status } from "../domain/types";
-import { DASHES } from "./ellipses";
 import type { Layer, Placed, Scene } from "./layer";
-import { movers } from "./place";
+import { ALARM_RADIUS, CHOSEN_RADIUS, movers, RADIUS, STALE_RADIUS } from "./place";
 
-export const RADIUS = 13;
+/** Of the stale diamond: as large to the eye as the circle. */
+const STALE_FILL = RADIUS + 2;
 const TICK = 11;
 
 export const responders: Layer = {
@@ -25,12 +25,12 @@ function draw(context: CanvasRenderingContext2D, scene: Scene, { node, x, y, els
   if (node.node === scene.selected) {
     context.strokeStyle = scene.palette.ink;
     context.lineWidth = 3;
-    circle(context, x, y, RADIUS + 8);
+    circle(context, x, y, CHOSEN_RADIUS);
     context.stroke();
   }
   if (alarm) {
     context.fillStyle = scene.palette.alarm;
-    circle(context, x, y, RADIUS + 6);
+    circle(context, x, y, ALARM_RADIUS);
     context.fill();
   }
   if (node.heading_rad != null && status === "live" && node.role !== "uav") {
@@ -42,31 +42,47 @@ function draw(context: CanvasRenderingContext2D, scene: Scene, { node, x, y, els
     context.lineTo(x + (RADIUS + TICK) * east, y - (RADIUS + TICK) * north);
     context.stroke();
   }
-  outline(context, node.role === "uav" ? "uav" : status, x, y);
-  context.fillStyle = status === "lost" || status === "retired" ? scene.palette.ground : mark.colour;
+  const shape = node.role === "uav" ? "uav" : status;
+  const gone = status === "lost" || status === "retired";
+  outline(context, shape, x, y);
+  context.fillStyle = gone ? scene.palette.ground : mark.colour;
   context.fill();
-  context.strokeStyle = status === "live" ? scene.palette.ground : mark.colour;
-  context.lineWidth = status === "live" ? 1.5 : 3;
-  context.setLineDash(DASHES[status].length > 0 ? [5, 3] : []);
+  context.strokeStyle = gone ? mark.colour : scene.palette.ground;
+  context.lineWidth = gone ? 3 : 1.5;
+  context.setLineDash(gone ? [5, 3] : []);
   context.stroke();
+  if (status === "stale") {
+    // Apart from the fill and in another colour: dashes on the edge of their own fill look like a cogwheel.
+    outline(context, shape, x, y, STALE_RADIUS - STALE_FILL);
+    context.strokeStyle = alarm ? scene.palette.alarmInk : scene.palette.ink;
+    context.lineWidth = 2;
+    context.setLineDash([6, 4]);
+    context.stroke();
+  }
   context.setLineDash([]);
-  context.fillStyle = status === "lost" || status === "retired" ? scene.palette.ink : mark.ink;
+  context.fillStyle = gone ? scene.palette.ink : mark.ink;
   context.font = "700 11px system-ui, sans-serif";
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.fillText(status === "lost" ? "?" : mark.letters, x, y + 0.5);
 }
 
-/** Live is round, stale a diamond, lost a square; a UAV is a triangle that points up. */
-function outline(context: CanvasRenderingContext2D, shape: Status | "uav", x: number, y: number): void {
+/** Live is round, stale a diamond, lost a square; a UAV is a triangle that points up. `wider` by some pixels. */
+function outline(
+  context: CanvasRenderingContext2D,
+  shape: Status | "uav",
+  x: number,
+  y: number,
+  wider = 0,
+): void {
   context.beginPath();
   if (shape === "uav") {
-    context.moveTo(x, y - RADIUS - 4);
-    context.lineTo(x + RADIUS + 4, y + RADIUS - 2);
-    context.lineTo(x - RADIUS - 4, y + RADIUS - 2);
+    context.moveTo(x, y - RADIUS - 4 - wider);
+    context.lineTo(x + RADIUS + 4 + wider, y + RADIUS - 2 + wider / 2);
+    context.lineTo(x - RADIUS - 4 - wider, y + RADIUS - 2 + wider / 2);
     context.closePath();
   } else if (shape === "stale") {
-    const r = RADIUS + 3;
+    const r = STALE_FILL + wider;
     context.moveTo(x, y - r);
     context.lineTo(x + r, y);
     context.lineTo(x, y + r);

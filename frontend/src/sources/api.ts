@@ -75,7 +75,7 @@ export async function advice(id: string, node: string): Promise<Advice> {
 }
 
 /**
- * Puts the commander's word on an alarm into the log, one reading for each state.
+ * Puts the commander's word on an alarm into the log.
  * `batch` makes it safe to send again.
  */
 export async function postAlarm(
@@ -83,19 +83,13 @@ export async function postAlarm(
   batch: string,
   t: number,
   alarm: FrameAlarm,
-  states: readonly FrameAlarm["state"][],
+  state: FrameAlarm["state"],
 ): Promise<void> {
-  const readings = states.map((state) => ({
-    kind: "alarm" as const,
-    t,
-    node: alarm.node,
-    alarm: alarm.alarm,
-    state,
-  }));
+  const said = { kind: "alarm" as const, t, node: alarm.node, alarm: alarm.alarm, state };
   const answer = await answered(
     client.POST("/api/v1/incidents/{incident}/telemetry", {
       params: { path: { incident: id } },
-      body: { gateway: GATEWAY, batch, readings },
+      body: { gateway: GATEWAY, batch, readings: [said] },
     }),
   );
   const refused = answer.rejected[0];

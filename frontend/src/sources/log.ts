@@ -1,0 +1,53 @@
+/** The log of an incident, read in the background: its newest part first, and no more than a screen can bear. */
+import { alarmsInLine, type LoggedAlarm } from "../domain/past-alarms";
+
+const LINES_A_PAGE = 250;
+/** So much is read for one incident: about an hour of two crews (characters). */
+const MOST_CHARACTERS = 8_000_000;
+/** Between two pages the link is left to what is live (ms). */
+const PAUSE_MS = 400;
+
+/**
+ * Everything said of alarms in the log, page after page.
+ *
+ * @param id the incident
+ * @param lastSeq its newest entry
+ * @param signal ends it
+ * @returns what each page holds, the newest page first; ends early where the log is larger than that
+ */
+export async function* loggedAlarms(
+  id: string,
+  lastSeq: number,
+  signal: AbortSignal,
+): AsyncGenerator<LoggedAlarm[]> {
+  let budget = MOST_CHARACTERS;
+  for (let end = lastSeq; end > 0 && budget > 0 && !signal.aborted; end -= LINES_A_PAGE) {
+    const after = Math.max(0, end - LINES_A_PAGE);
+    const page: LoggedAlarm[] = [];
+    for await (const line of lines(id, after, end - after, signal)) {
+      budget -= line.length;
+      page.push(...alarmsInLine(line));
+      if (budget <= 0) return;
+    }
+    yield page;
+    await new Promise((resolve) => setTimeout(resolve, PAUSE_MS));
+  }
+}
+
+/** The lines as they come; who stops reading stops the transfer. */
+async function* lines(id: string, after: number, limit: number, signal: AbortSignal): AsyncGenerator<string> {
+  const query = new URLSearchParams({ after: String(after), limit: String(limit) });
+  const answer = await fetch(`/api/v1/incidents/${encodeURIComponent(id)}/log?${query}`, { signal });
+  const reader = answer.ok ? answer.body?.pipeThrough(new TextDecoderStream()).getReader() : undefined;
+  if (reader === undefined) return;
+  let rest = "";
+  try {
+    for (let part = await reader.read(); !part.done; part = await reader.read()) {
+      const whole = (rest + part.value).split("\n");
+      rest = whole.pop() ?? "";
+      yield* whole;
+    }
+  } finally {
+    await reader.cancel();
+  }
+}

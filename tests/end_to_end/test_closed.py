@@ -1,0 +1,69 @@
+"""A closed incident is not live, and says so."""
+
+import time
+
+from tests.end_to_end.commander import Commander
+from tests.end_to_end.scene import alarm, base, heard, recorded, responder, step
+from tests.running import Post, Server, eventually
+
+T0 = 1_763_712_345.0
+
+
+def close(post: Post, incident: str) -> None:
+    """Close an incident for good."""
+    assert post.http.patch(f"/incidents/{incident}", json={"state": "closed"}).status_code == 200
+
+
+def test_a_screen_learns_that_its_incident_was_closed_and_its_clock_stands_still(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident(clock="live")
+    now = time.time()
+    heard(post, incident, base(now), responder(now, "walker", "A", [2, 2, 0]))
+    commander.opens(server.url, incident)
+    assert commander.mode == "LIVE"
+    close(post, incident)
+    eventually(lambda: commander.mode == "CLOSED", within_s=15)
+    assert commander.newest_button == "Closed"
+
+    time.sleep(1.5)  # a beat of the server
+    stopped = commander.clock
+    time.sleep(2.5)
+    assert commander.clock == stopped
+
+
+def test_a_closed_incident_opens_as_closed_and_its_past_can_be_looked_at(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
+    heard(post, incident, step(T0 + 8, "walker", [1, 0, 0]))
+    recorded(post, incident, T0 + 8)
+    close(post, incident)
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.mode == "CLOSED")
+    commander.scrubs_to(T0 + 4)
+    eventually(lambda: commander.mode == "REPLAY")
+    assert commander.newest_button == "Back to the end"
+    commander.goes_back_to_live()
+    eventually(lambda: commander.mode == "CLOSED")
+
+
+def test_the_alarms_of_the_past_are_marked_though_they_are_over(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
+    heard(post, incident, alarm(T0 + 2, "walker"), alarm(T0 + 4, "walker"))
+    heard(
+        post,
+        incident,
+        alarm(T0 + 5, "walker", state="acknowledged"),
+        alarm(T0 + 6, "walker", state="cleared"),
+    )
+    heard(post, incident, step(T0 + 9, "walker", [1, 0, 0]))
+    recorded(post, incident, T0 + 9)
+    close(post, incident)
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.event_marks == ["MAYDAY WALKER"])
+    assert commander.banners == []
