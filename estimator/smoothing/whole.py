@@ -17,7 +17,7 @@ from estimator.fusion.tick import flush, fold_tick, keep_poses
 from estimator.graph.robust import mixture_cost
 from estimator.inertial.samples import AnyFolded
 from estimator.smoothing.changes.branch import branch, reunite
-from estimator.smoothing.changes.elsewhere import GAIN
+from estimator.smoothing.changes.elsewhere import GAIN, USUAL_COST
 from estimator.smoothing.changes.moved import Moved, moved_nodes
 from estimator.smoothing.extent import spacing_s as usual_s
 from estimator.smoothing.keyframes.layout import Layout
@@ -85,7 +85,8 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     begun = [_begun(state)]
     if reunite(other):
         begun.append(_begun(other))
-    problem, solved = min(begun, key=lambda one: _misfit(*one))
+    placed = max(len(problem.rows.sigma) for problem, _ in begun)
+    problem, solved = min(begun, key=lambda one: _misfit(one[0], one[1], placed))
     state, rows = problem.layout.state, problem.rows
     first, *later = LEARNING
     learn(state, problem, solved, first, kinds=False)
@@ -107,14 +108,21 @@ def _begun(state: FusionState) -> tuple[Problem, Solved]:
     return _settled(problem, solved, LEARNING_RESTING)
 
 
-def _misfit(problem: Problem, solved: Solved) -> float:
+def _misfit(problem: Problem, solved: Solved, most: int) -> float:
     """How much worse a solution is than one that fits all its readings, in log likelihood.
 
-    Each place that it needs is to be worth what it is worth to find one.
+    Each place that it needs is to be worth what it is worth to find one. Readings to a node that it has no
+    place for cost what readings usually do: leaving them out is no way to fit them.
+
+    Args:
+        problem: of the whole incident.
+        solved: its solution.
+        most: how many readings others have a place for.
     """
     rows = problem.rows
     at_best = mixture_cost(np.zeros(len(rows.sigma)), rows.sigma, *rows.noise.T)
-    return float(solved.cost - at_best.sum() + GAIN * len(problem.layout.stands))
+    unplaced = USUAL_COST * (most - len(rows.sigma))
+    return float(solved.cost - at_best.sum() + unplaced + GAIN * len(problem.layout.stands))
 
 
 def _settled(problem: Problem, solved: Solved, resting: float) -> tuple[Problem, Solved]:
