@@ -14,10 +14,15 @@ from estimator.graph.dense import Array, Indices
 
 MOST = 1e300
 """What a reading costs at most, in log likelihood: of two infinite costs none would be the lower one."""
+NEGLIGIBLE = 700.0
+"""Of a sum of likelihoods what is less likely by so much, in log likelihood, is nothing."""
+WILD, FARTHER = 0.1, 10.0
+"""How many of the bad readings are wild: so many times as far off as the others. An echo off a steel door, a
+glitch: one range of 60 m must not take somebody there of whom nothing was heard for twenty seconds."""
 
 
 class Mixture(NamedTuple):
-    """Good noise N(0, σ²), or with probability `outliers` bad noise N(shift, spread² + σ²).
+    """Good noise N(0, σ²), or with probability `outliers` bad noise N(shift, spread² + σ²); see `WILD`.
 
     Attributes:
         outliers: how often the bad noise happens, 0 to 1.
@@ -44,11 +49,17 @@ class Weighted(NamedTuple):
     good: Array
 
 
+@njit(cache=True, forceinline=True)
+def likelier(least: float, cost: float) -> float:
+    """A likelihood over the largest one of a sum, from both costs; it is nothing where it is far smaller."""
+    return 0.0 if cost - least > NEGLIGIBLE else float(np.exp(min(least - cost, 0.0)))
+
+
 @njit(cache=True, error_model="numpy")
 def weigh(
     residual: Array, sigma: Array, predicted: Array, outliers: Array, shift: Array, spread: Array
 ) -> Weighted:
-    """E-step: the probability of each component, and the Gaussian edge that both together pull with.
+    """E-step: the probability of each component, and the Gaussian edge that all together pull with.
 
     The probabilities come from the residual with the state's own uncertainty added, so that an uncertain
     state does not make outliers of good readings.
@@ -66,11 +77,20 @@ def weigh(
     for i in range(m):
         good_variance = sigma[i] ** 2
         bad_variance = good_variance + spread[i] ** 2
+        wild_variance = good_variance + (FARTHER * spread[i]) ** 2
         good_total, bad_total = good_variance + predicted[i], bad_variance + predicted[i]
-        lead = 0.5 * (residual[i] ** 2 / good_total - (residual[i] - shift[i]) ** 2 / bad_total)
-        odds = outliers[i] / (1.0 - outliers[i]) * np.sqrt(good_total / bad_total)
-        good[i] = 1.0 / (1.0 + odds * np.exp(min(max(lead, -700.0), 700.0)))
-        from_good, from_bad = good[i] / good_variance, (1.0 - good[i]) / bad_variance
+        wild_total, off = wild_variance + predicted[i], (residual[i] - shift[i]) ** 2
+        by_good = 0.5 * residual[i] ** 2 / good_total
+        by_bad, by_wild = 0.5 * off / bad_total, 0.5 * off / wild_total
+        # The likeliest one is put before the sum, so that the sum is never nil.
+        least = by_good if outliers[i] == 0.0 else min(by_good, by_bad, by_wild)
+        usual = (1.0 - outliers[i]) / np.sqrt(good_total) * likelier(least, by_good)
+        bad = (1.0 - WILD) * outliers[i] / np.sqrt(bad_total) * likelier(least, by_bad)
+        wild = WILD * outliers[i] / np.sqrt(wild_total) * likelier(least, by_wild)
+        total = usual + bad + wild
+        good[i] = usual / total
+        from_good = good[i] / good_variance
+        from_bad = (bad / bad_variance + wild / wild_variance) / total
         information[i] = from_good + from_bad
         pulled[i] = residual[i] - shift[i] * from_bad / information[i]
     return Weighted(information, pulled, good)
@@ -89,16 +109,15 @@ def mixture_cost(residual: Array, sigma: Array, outliers: Array, shift: Array, s
     """
     cost = np.empty(len(residual))
     for i in range(len(residual)):
-        bad_variance = sigma[i] ** 2 + spread[i] ** 2
-        usual, rare = (1.0 - outliers[i]) / sigma[i], outliers[i] / np.sqrt(bad_variance)
+        variance, off = sigma[i] ** 2, (residual[i] - shift[i]) ** 2
+        bad_variance, wild_variance = variance + spread[i] ** 2, variance + (FARTHER * spread[i]) ** 2
         by_good = min(0.5 * (residual[i] / sigma[i]) ** 2, MOST)
-        by_bad = min(0.5 * (residual[i] - shift[i]) ** 2 / bad_variance, MOST)
-        # One exponential and one logarithm take all of the time: the likelier way to be so far off is put
-        # before the sum, so that the sum is never nil.
-        if by_good < by_bad or rare == 0.0:
-            cost[i] = by_good - np.log(usual + rare * np.exp(min(by_good - by_bad, 0.0)))
-        else:
-            cost[i] = by_bad - np.log(rare + usual * np.exp(by_bad - by_good))
+        by_bad, by_wild = min(0.5 * off / bad_variance, MOST), min(0.5 * off / wild_variance, MOST)
+        least = by_good if outliers[i] == 0.0 else min(by_good, by_bad, by_wild)
+        total = (1.0 - outliers[i]) / sigma[i] * likelier(least, by_good)
+        total += (1.0 - WILD) * outliers[i] / np.sqrt(bad_variance) * likelier(least, by_bad)
+        total += WILD * outliers[i] / np.sqrt(wild_variance) * likelier(least, by_wild)
+        cost[i] = least - np.log(total)
     return cost
 
 

@@ -30,7 +30,7 @@ from estimator.fusion.rows import (
     table_of,
 )
 from estimator.graph.dense import Array, Indices
-from estimator.graph.robust import weigh
+from estimator.graph.robust import FARTHER, WILD, weigh
 from estimator.graph.variable import Variable
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
@@ -146,10 +146,13 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
         return found if (found > (BENT * own) ** 2).any() else np.zeros(len(table))
 
     def misfit(sigma: Array, residual: Array, moved: Array) -> float:
-        good, bad = sigma**2, sigma**2 + spread**2
-        from_good = np.log1p(-outliers) - 0.5 * (np.log(good) + residual**2 / good)
-        from_bad = np.log(outliers) - 0.5 * (np.log(bad) + (residual - shift) ** 2 / bad)
-        return float(0.5 * moved @ prior @ moved - pull @ moved - np.logaddexp(from_good, from_bad).sum())
+        good, bad, wild = sigma**2, sigma**2 + spread**2, sigma**2 + (FARTHER * spread) ** 2
+        off = (residual - shift) ** 2
+        likely = np.log1p(-outliers) - 0.5 * (np.log(good) + residual**2 / good)
+        for share, variance in ((1.0 - WILD, bad), (WILD, wild)):
+            other = np.log(share * outliers) - 0.5 * (np.log(variance) + off / variance)
+            likely = np.logaddexp(likely, other)
+        return float(0.5 * moved @ prior @ moved - pull @ moved - likely.sum())
 
     x, matrix = start, prior
     whole, residual = dense(x)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import norm
 
-from estimator.graph.robust import mixture_cost, weigh
+from estimator.graph.robust import FARTHER, WILD, mixture_cost, weigh
 
 OUTLIERS, SHIFT, SPREAD = 0.05, 2.0, 6.0
 
@@ -16,19 +16,29 @@ def test_cost_and_weights_are_those_of_the_densities(off: float, sigma: float, o
     one = [np.array([number]) for number in (off, sigma, outliers, SHIFT, SPREAD)]
     residual, sigmas, *noise = one
     with np.errstate(divide="ignore"):
-        usual, rare = np.log([1.0 - outliers, outliers])
+        usual, rare, seldom = np.log([1.0 - outliers, (1.0 - WILD) * outliers, WILD * outliers])
     root = 0.5 * np.log(2.0 * np.pi)
     good = usual + norm.logpdf(off, 0.0, sigma) + root
     bad = rare + norm.logpdf(off, SHIFT, np.hypot(sigma, SPREAD)) + root
-    assert mixture_cost(residual, sigmas, *noise)[0] == pytest.approx(-np.logaddexp(good, bad), abs=1e-9)
+    wild = seldom + norm.logpdf(off, SHIFT, np.hypot(sigma, FARTHER * SPREAD)) + root
+    whole = np.logaddexp(np.logaddexp(good, bad), wild)
+    assert mixture_cost(residual, sigmas, *noise)[0] == pytest.approx(-whole, abs=1e-9)
     found = weigh(residual, sigmas, np.zeros(1), *noise)
-    share = np.exp(good - np.logaddexp(good, bad))
-    assert found.good[0] == pytest.approx(share, abs=1e-9)
-    wide = sigma**2 + SPREAD**2
-    from_good, from_bad = share / sigma**2, (1.0 - share) / wide
+    assert found.good[0] == pytest.approx(np.exp(good - whole), abs=1e-9)
+    from_good = np.exp(good - whole) / sigma**2
+    from_bad = np.exp(bad - whole) / (sigma**2 + SPREAD**2)
+    from_bad += np.exp(wild - whole) / (sigma**2 + (FARTHER * SPREAD) ** 2)
     assert found.information[0] == pytest.approx(from_good + from_bad)
     gradient = from_good * off + from_bad * (off - SHIFT)
     assert found.information[0] * found.residual[0] == pytest.approx(gradient, abs=1e-9)
+
+
+def test_a_wild_reading_pulls_less_than_a_bad_one_the_farther_off_it_is() -> None:
+    """A redescending loss: what is 20 times as far off as bad readings are has hardly any pull left."""
+    noise = [np.full(2, number) for number in (OUTLIERS, SHIFT, SPREAD)]
+    found = weigh(np.array([2.0 * SPREAD, 20.0 * SPREAD]), np.full(2, 0.3), np.zeros(2), *noise)
+    pull = found.information * found.residual
+    assert pull[1] < 0.2 * pull[0]
 
 
 def test_what_is_beyond_all_measure_costs_more_than_anything_and_is_still_a_number() -> None:
