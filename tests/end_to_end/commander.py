@@ -1,4 +1,4 @@
-"""The commander before the screen: the only file that knows the browser driver and the page's structure."""
+"""The commander before the screen: beside `canvas` the only file that knows the page's structure."""
 
 import re
 import time
@@ -8,44 +8,8 @@ from urllib.parse import quote, urlencode
 
 from playwright.sync_api import Locator, Page
 
+from tests.end_to_end.canvas import MapSeen
 from tests.running import eventually
-
-# Crews take these colours in the order of their names.
-FIRST_CREW = "#56b4e9"
-SECOND_CREW = "#e69f00"
-THIRD_CREW = "#009e73"
-
-_PIXELS = """(canvas, {colour, tolerance}) => {
-  const wanted = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
-  const {width, height} = canvas;
-  const ratio = width / canvas.clientWidth;
-  const {data} = canvas.getContext('2d').getImageData(0, 0, width, height);
-  let count = 0, x = 0, y = 0, left = width, right = 0, top = height, bottom = 0;
-  for (let at = 0; at < data.length; at += 4) {
-    if (wanted.some((value, part) => Math.abs(data[at + part] - value) > tolerance)) continue;
-    const column = (at / 4) % width, row = Math.floor(at / 4 / width);
-    count += 1; x += column; y += row;
-    left = Math.min(left, column); right = Math.max(right, column);
-    top = Math.min(top, row); bottom = Math.max(bottom, row);
-  }
-  if (count === 0) return {count, x: 0, y: 0, left: 0, right: 0, top: 0, bottom: 0};
-  return {count: count / ratio ** 2, x: x / count / ratio, y: y / count / ratio,
-          left: left / ratio, right: right / ratio, top: top / ratio, bottom: bottom / ratio};
-}"""
-
-_WIDTH_BETWEEN = """(canvas, {colour, top, bottom}) => {
-  const wanted = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
-  const ratio = canvas.width / canvas.clientWidth;
-  const [first, last] = [Math.round(top * ratio), Math.round(bottom * ratio)];
-  const {data} = canvas.getContext('2d').getImageData(0, first, canvas.width, last - first + 1);
-  let left = canvas.width, right = 0;
-  for (let at = 0; at < data.length; at += 4) {
-    if (wanted.some((value, part) => data[at + part] !== value)) continue;
-    const column = (at / 4) % canvas.width;
-    left = Math.min(left, column); right = Math.max(right, column);
-  }
-  return Math.max(0, right - left) / ratio;
-}"""
 
 
 @dataclass(frozen=True)
@@ -58,30 +22,7 @@ class BoardRow:
     error: str
 
 
-@dataclass(frozen=True)
-class Pixels:
-    """Where on the map a colour lies (CSS pixels, y downwards): centroid and extent."""
-
-    count: float
-    x: float
-    y: float
-    left: float
-    right: float
-    top: float
-    bottom: float
-
-    @property
-    def width(self) -> float:
-        """From its leftmost to its rightmost pixel."""
-        return self.right - self.left
-
-    @property
-    def height(self) -> float:
-        """From its topmost to its lowest pixel."""
-        return self.bottom - self.top
-
-
-class Commander:
+class Commander(MapSeen):
     """What a commander sees and does.
 
     Args:
@@ -89,7 +30,7 @@ class Commander:
     """
 
     def __init__(self, page: Page) -> None:
-        self.page = page
+        super().__init__(page)
         self.requested: list[str] = []
         self.faults: list[str] = []
         page.on("request", lambda request: self.requested.append(request.url))
@@ -316,38 +257,6 @@ class Commander:
     def holds_the_map(self) -> None:
         """Zoom out a step: from then on the map stays where it is."""
         self.presses("-")
-
-    def colour(self, colour: str, tolerance: int = 0) -> Pixels:
-        """The pixels of the map within `tolerance` of a colour in each channel: a mark's are exact."""
-        found = self.page.get_by_test_id("map").evaluate(_PIXELS, {"colour": colour, "tolerance": tolerance})
-        return Pixels(**{name: float(value) for name, value in found.items()})
-
-    def shape(self, colour: str) -> str:
-        """The outline of a crew's one mark: round, diamond or square; "none" where there is no mark."""
-        mark = self.colour(colour)
-        if not mark.count:
-            return "none"
-        across = self.page.get_by_test_id("map").evaluate(
-            _WIDTH_BETWEEN, {"colour": colour, "top": mark.top + 1, "bottom": mark.top + 0.25 * mark.height}
-        )
-        share = float(across) / mark.height
-        # At a quarter of their height a circle is 0.87 as wide, a diamond 0.5, a square 1.
-        return "diamond" if share < 0.68 else "round" if share < 0.93 else "square"
-
-    def settled_mark(self, colour: str) -> Pixels:
-        """A crew's mark once two looks, some frames apart, find it in the same place."""
-        seen: list[Pixels] = []
-
-        def still() -> Pixels | None:
-            seen.append(self.colour(colour))
-            if len(seen) < 2 or not seen[-1].count:
-                return None
-            before, now = seen[-2:]
-            return now if abs(now.x - before.x) < 0.5 and abs(now.y - before.y) < 0.5 else None
-
-        found = eventually(still, every_s=0.3)
-        assert isinstance(found, Pixels)
-        return found
 
     def has_webgl(self) -> bool:
         """Whether this browser can draw with WebGL at all."""

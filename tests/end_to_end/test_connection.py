@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.end_to_end.commander import FIRST_CREW, Commander
+from tests.end_to_end.canvas import FIRST_CREW
+from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import alarm, base, heard, responder, step
 from tests.running import Post, Server, eventually, running
 

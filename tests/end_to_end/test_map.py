@@ -4,7 +4,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from tests.end_to_end.commander import FIRST_CREW, SECOND_CREW, THIRD_CREW, Commander
+from tests.end_to_end.canvas import FIRST_CREW, SECOND_CREW, THIRD_CREW
+from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import alarm, base, heard, responder, step
 from tests.running import Post, Server, eventually
 

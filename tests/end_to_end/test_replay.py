@@ -2,7 +2,8 @@
 
 import pytest
 
-from tests.end_to_end.commander import FIRST_CREW, SECOND_CREW, BoardRow, Commander, Pixels
+from tests.end_to_end.canvas import FIRST_CREW, SECOND_CREW, Pixels
+from tests.end_to_end.commander import BoardRow, Commander
 from tests.end_to_end.scene import alarm, base, heard, recorded, responder, step
 from tests.running import Post, Server, eventually
 

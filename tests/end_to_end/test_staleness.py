@@ -2,7 +2,8 @@
 
 import time
 
-from tests.end_to_end.commander import FIRST_CREW, Commander
+from tests.end_to_end.canvas import FIRST_CREW
+from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import base, heard, responder, step
 from tests.running import Post, Server, eventually
 
