@@ -6,10 +6,29 @@ import pytest
 
 from tests.end_to_end.canvas import FIRST_CREW, SECOND_CREW, THIRD_CREW
 from tests.end_to_end.commander import Commander
-from tests.end_to_end.scene import alarm, base, heard, responder, step
+from tests.end_to_end.scene import Reading, alarm, base, heard, responder, step
 from tests.running import Post, Server, eventually
 
 T0 = 1_763_712_345.0
+
+
+def between_two_who_stand(
+    server: Server, post: Post, commander: Commander, first: Reading, apart_m: float
+) -> str:
+    """An incident on the screen: one of the first crew, and two others, known well, who mark the scale."""
+    incident = post.open_incident()
+    west, east = ([side * apart_m / 2.0, -2, 0] for side in (-1, 1))
+    heard(
+        post,
+        incident,
+        base(T0),
+        first,
+        responder(T0, "west", "B", west, sigma_m=0.1),
+        responder(T0, "east", "C", east, sigma_m=0.1),
+    )
+    commander.opens(server.url, incident)
+    commander.turns_trails_off()
+    return incident
 
 
 def test_a_responder_moves_on_the_map_as_far_as_it_walks(
@@ -47,17 +66,8 @@ def test_a_responder_moves_on_the_map_as_far_as_it_walks(
 def test_the_ellipse_around_a_fix_has_its_95_percent_size_and_grows_while_nothing_is_heard(
     server: Server, post: Post, commander: Commander
 ) -> None:
-    incident = post.open_incident()
-    heard(
-        post,
-        incident,
-        base(T0),
-        responder(T0, "quiet", "A", [0, 4, 0], sigma_m=1.0),
-        responder(T0, "west", "B", [-6, -2, 0], sigma_m=0.1),
-        responder(T0, "east", "C", [6, -2, 0], sigma_m=0.1),
-    )
-    commander.opens(server.url, incident)
-    commander.turns_trails_off()
+    quiet = responder(T0, "quiet", "A", [0, 4, 0], sigma_m=1.0)
+    incident = between_two_who_stand(server, post, commander, quiet, apart_m=12.0)
     mark = commander.settled_mark(FIRST_CREW)
     west, east = commander.settled_mark(SECOND_CREW), commander.settled_mark(THIRD_CREW)
     pixels_per_metre = (east.x - west.x) / 12
@@ -153,17 +163,8 @@ def test_on_a_tablet_the_card_does_not_lie_over_the_one_it_is_about(
 def test_the_ellipse_of_a_sure_fix_shows_around_its_mark(
     server: Server, post: Post, commander: Commander
 ) -> None:
-    incident = post.open_incident()
-    heard(
-        post,
-        incident,
-        base(T0),
-        responder(T0, "sure", "A", [0, 4, 0], sigma_m=0.01),
-        responder(T0, "west", "B", [-40, -2, 0], sigma_m=0.1),
-        responder(T0, "east", "C", [40, -2, 0], sigma_m=0.1),
-    )
-    commander.opens(server.url, incident)
-    commander.turns_trails_off()
+    sure = responder(T0, "sure", "A", [0, 4, 0], sigma_m=0.01)
+    between_two_who_stand(server, post, commander, sure, apart_m=80.0)
     mark = commander.settled_mark(FIRST_CREW)
     assert commander.colour(FIRST_CREW, tolerance=24).height > mark.height + 8
 

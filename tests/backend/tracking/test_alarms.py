@@ -5,6 +5,7 @@ import pytest
 from backend.tracking.alarms import REPEAT_S, TEXTS_KEPT
 from backend.tracking.board import Board
 from estimator.measurements import Alarm
+from estimator.measurements.status import AlarmKind, AlarmState
 
 LUNAR = "Location: second floor, corridor. Unit: E7. Name: Novak. Assignment: attack. Resources: air."
 
@@ -15,19 +16,19 @@ def shown(*readings: Alarm) -> list[tuple[str, str, float, str | None]]:
     return [(a.alarm, a.state, a.t, a.text) for a in board.picture([], 1.0).alarms]
 
 
-def alarm(state: str, t: float, kind: str = "mayday", text: str | None = None) -> Alarm:
-    return Alarm(t=t, node="ff1", alarm=kind, state=state, text=text)  # type: ignore[arg-type]  # literals as text
+def alarm(state: AlarmState, t: float, kind: AlarmKind = "mayday", text: str | None = None) -> Alarm:
+    return Alarm(t=t, node="ff1", alarm=kind, state=state, text=text)
 
 
-def raised(t: float, kind: str = "mayday", text: str | None = None) -> Alarm:
+def raised(t: float, kind: AlarmKind = "mayday", text: str | None = None) -> Alarm:
     return alarm("raised", t, kind, text)
 
 
-def acknowledged(t: float, kind: str = "mayday", text: str | None = None) -> Alarm:
+def acknowledged(t: float, kind: AlarmKind = "mayday", text: str | None = None) -> Alarm:
     return alarm("acknowledged", t, kind, text)
 
 
-def cleared(t: float, kind: str = "mayday", text: str | None = None) -> Alarm:
+def cleared(t: float, kind: AlarmKind = "mayday", text: str | None = None) -> Alarm:
     return alarm("cleared", t, kind, text)
 
 
@@ -39,7 +40,9 @@ def test_a_mayday_stands_until_it_is_acknowledged_and_cleared() -> None:
 
 
 @pytest.mark.parametrize("kind", ["mayday", "pass", "help"])
-def test_a_call_that_the_unit_clears_by_itself_stands_until_a_person_has_acknowledged_it(kind: str) -> None:
+def test_a_call_that_the_unit_clears_by_itself_stands_until_a_person_has_acknowledged_it(
+    kind: AlarmKind,
+) -> None:
     calls = (raised(10.0, kind, "trapped"), cleared(12.0, kind, "switched off"))
     assert shown(*calls) == [(kind, "cleared", 10.0, "trapped\nswitched off")]
     assert shown(*calls, cleared(13.0, kind)) == [(kind, "cleared", 10.0, "trapped\nswitched off")]
