@@ -2,21 +2,21 @@
 
 import numpy as np
 
-from estimator.fusion.descent import descend
-from estimator.fusion.echoes import tell as tell_echoes
-from estimator.fusion.free import free_motion
-from estimator.fusion.gyros import prior_sigma_radps
-from estimator.fusion.ledger import COLUMNS
-from estimator.fusion.links import NEW
-from estimator.fusion.modes import Sought, costs_of, find_modes
-from estimator.fusion.motion import walked
-from estimator.fusion.pair_rows import PAIR, Technology, pair_rows
+from estimator.fusion.entering.modes import Sought, costs_of, find_modes
+from estimator.fusion.learned.gyros import prior_sigma_radps
+from estimator.fusion.learned.links import NEW
+from estimator.fusion.memory.ledger import COLUMNS
+from estimator.fusion.motion.free import free_motion
+from estimator.fusion.motion.silence import unheard_m2
+from estimator.fusion.motion.swings import swung_m2
+from estimator.fusion.motion.units import walked
+from estimator.fusion.motion.way import End, offset
+from estimator.fusion.readings.echoes import tell as tell_echoes
+from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.report import shown
-from estimator.fusion.rows import FIELDS, ONE
-from estimator.fusion.silence import unheard_m2
-from estimator.fusion.swings import swung_m2
+from estimator.fusion.rows.descent import descend
+from estimator.fusion.rows.rows import FIELDS, ONE
 from estimator.fusion.update import odd, tally
-from estimator.fusion.way import End, offset
 from estimator.graph.dense import factorise, inverse
 from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute, take_off
 from estimator.graph.kirchhoff import Kirchhoff

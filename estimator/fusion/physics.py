@@ -37,7 +37,8 @@ GYRO_WALK_RAD_PER_ROOT_S = radians(0.03)
 """Angle random walk of a consumer MEMS gyro, 0.2 to 2 degrees per root hour, and a trembling foot."""
 BIAS_SIGMA_MOST_RADPS = radians(0.5)
 """Gyro bias after the unit's own calibration at switch-on: nearly nil of a good unit, half a degree a second
-of a cheap one once warm. How far those of a crew differ is anything up to that (`fusion/gyros.py`)."""
+of a cheap one once warm. How far those of a crew differ is anything up to that
+(`fusion/learned/gyros.py`)."""
 BIAS_WALK_RADPS_PER_ROOT_S = radians(0.001)
 SET_OFF_BIAS_RADPS = radians(0.04)
 """A gyro's scale is good to 1 % (data sheets of LSM6DSO, ICM-20948), and who follows a wall turns round once

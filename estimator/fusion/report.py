@@ -4,11 +4,11 @@ import numpy as np
 from numba import njit
 
 from estimator.estimate import NodeEstimate, Relative
+from estimator.fusion.entering.introduce import tuple_of, upper_triangle
 from estimator.fusion.images import doubt_between_m2, doubt_m2
-from estimator.fusion.introduce import tuple_of, upper_triangle
-from estimator.fusion.nodes import NodeState
-from estimator.fusion.state import FusionState
-from estimator.fusion.swings import loose_headings, swung_m2
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.swings import loose_headings, swung_m2
 from estimator.graph.dense import Array, Indices
 from estimator.measurements.bearing import within_pi
 

@@ -7,12 +7,17 @@ from operator import attrgetter, itemgetter
 import numpy as np
 from msgspec.structs import replace
 
-from estimator.fusion import beginnings, boots, free, held, introduce, motion, physics
-from estimator.fusion.pairs import AnyPair, Pairs
-from estimator.fusion.rows import Single, table_of
-from estimator.fusion.state import FusionState
+from estimator.fusion import physics
+from estimator.fusion.entering import beginnings, introduce
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.free import move_free
+from estimator.fusion.motion.units import drift_units, was_silent
+from estimator.fusion.motion.way import offset_of
+from estimator.fusion.readings import boots, held
+from estimator.fusion.readings.displacements import move_units, returns
+from estimator.fusion.readings.pairs import AnyPair, Pairs
+from estimator.fusion.rows.rows import Single, table_of
 from estimator.fusion.update import update
-from estimator.fusion.way import offset_of
 from estimator.inertial.samples import AnyFolded, Samples
 from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude, Pressure
@@ -57,15 +62,15 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     displacements.sort(key=attrgetter("t"))
     holds.sort(key=attrgetter("t"))
     late_t, leaving = until_t - physics.PENDING_S, {r.node for r in retired}
-    while back := motion.returns(state, displacements):
+    while back := returns(state, displacements):
         # What was heard of who was silent is not held against where his unit has taken him since.
         name, back_t = min(back.items(), key=itemgetter(1))
         early = [r for r in displacements if r.t <= back.get(r.node, math.inf)]
         displacements = [r for r in displacements if r.t > back.get(r.node, math.inf)]
         _fold(state, early, [r for r in holds if r.t <= back_t], late_t, {name})
         holds = [*state.waiting, *(r for r in holds if r.t > back_t)]
-        motion.drift_units(state, {name: back_t})
-        state.suspected = state.suspected or motion.was_silent(state.nodes[name])
+        drift_units(state, {name: back_t})
+        state.suspected = state.suspected or was_silent(state.nodes[name])
     _fold(state, displacements, holds, late_t, leaving)
     for gone in retired:
         _retire(state, gone)
@@ -89,7 +94,7 @@ def _fold(
         unwaited: nodes for whose displacements nothing waits.
     """
     singles: list[Single] = []
-    motion.move_units(state, displacements, singles)
+    move_units(state, displacements, singles)
     ready = _covered(state, holds, late_t, unwaited)
     for part in _parts(state, ready):
         if part or singles:
@@ -236,9 +241,9 @@ def _carry(state: FusionState, until: Mapping[str, float]) -> None:
         elif node is not None and node.mode == "unit" and t > node.pose_t + SAME_EPOCH_S:
             silent[name] = t
     if drifting:
-        free.move_free(state, drifting)
+        move_free(state, drifting)
     if silent:
-        motion.drift_units(state, silent)
+        drift_units(state, silent)
 
 
 def _drop(state: FusionState, reading: Drop) -> bool:

@@ -3,13 +3,14 @@
 import numpy as np
 from numba import njit
 
-from estimator.fusion import echoes, physics
-from estimator.fusion.descent import INDEFINITE, SOLVED, Found, descend
-from estimator.fusion.ledger import RANGE, RSSI
-from estimator.fusion.links import ERROR, KEPT
-from estimator.fusion.noise import near_dbm
-from estimator.fusion.rows import CONSTANT, EXTRA, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
-from estimator.fusion.state import FusionState
+from estimator.fusion import physics
+from estimator.fusion.learned.links import ERROR, KEPT
+from estimator.fusion.learned.noise import near_dbm
+from estimator.fusion.memory.ledger import RANGE, RSSI
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.readings import echoes
+from estimator.fusion.rows.descent import INDEFINITE, SOLVED, Found, descend
+from estimator.fusion.rows.rows import CONSTANT, EXTRA, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
 

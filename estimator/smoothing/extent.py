@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from estimator.fusion.prior import Key, Prior
-from estimator.fusion.state import FusionState
+from estimator.fusion.memory.prior import Key, Prior
+from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Indices
 from estimator.smoothing.keyframes.layout import technology_key
 from estimator.smoothing.keyframes.walks import STATES

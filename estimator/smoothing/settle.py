@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from estimator.fusion.state import FusionState
+from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array, Indices
 from estimator.graph.kirchhoff import Kirchhoff, marginalised
 from estimator.graph.variable import Variable

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.fusion.beginnings import decide
-from estimator.fusion.ledger import Ledger
+from estimator.fusion.entering.beginnings import decide
+from estimator.fusion.memory.ledger import Ledger
+from estimator.fusion.memory.state import FusionState
 from estimator.fusion.order import UNTIL_T
-from estimator.fusion.state import FusionState
 from estimator.fusion.tick import flush, fold_tick, keep_poses
 from estimator.graph.robust import mixture_cost
 from estimator.inertial.samples import AnyFolded

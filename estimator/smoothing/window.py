@@ -12,8 +12,8 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.beginnings import decide
-from estimator.fusion.state import FusionState
+from estimator.fusion.entering.beginnings import decide
+from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
 from estimator.smoothing.changes.branch import branch

@@ -12,8 +12,8 @@ import msgspec
 
 from estimator.estimate import NodeEstimate, Notice, Relative
 from estimator.fusion import report
-from estimator.fusion.encode import FusionRecord, record_of, state_of
-from estimator.fusion.state import FusionState
+from estimator.fusion.memory.encode import FusionRecord, record_of, state_of
+from estimator.fusion.memory.state import FusionState
 from estimator.fusion.tick import flush
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading

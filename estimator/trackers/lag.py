@@ -13,8 +13,8 @@ from typing import Self
 import msgspec
 
 from estimator.estimate import Notice
+from estimator.fusion.memory.state import FusionState
 from estimator.fusion.order import end_of_tick, place_of, tick_of
-from estimator.fusion.state import FusionState
 from estimator.fusion.tick import fold_tick, names_of
 from estimator.inertial.samples import AnyFolded, Samples, in_pieces
 from estimator.measurements import AnyReading

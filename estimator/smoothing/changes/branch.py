@@ -5,10 +5,10 @@ import math
 import numpy as np
 from msgspec.structs import replace
 
-from estimator.fusion.introduce import NO_PRIOR_SIGMA_M
-from estimator.fusion.ledger import ECHO
-from estimator.fusion.nodes import NodeState
-from estimator.fusion.state import FusionState
+from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M
+from estimator.fusion.memory.ledger import ECHO
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements.node import MOVING_ROLES
 from estimator.smoothing.changes.moved import Moved

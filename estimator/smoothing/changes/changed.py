@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from estimator.fusion.ledger import RSSI
+from estimator.fusion.memory.ledger import RSSI
 from estimator.smoothing.problem.solve import Problem
 
 CHANGED_DB = 8.0

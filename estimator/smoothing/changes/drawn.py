@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from estimator.fusion.modes import find_modes
-from estimator.fusion.nodes import NodeState
+from estimator.fusion.entering.modes import find_modes
+from estimator.fusion.memory.nodes import NodeState
 from estimator.graph.kernels import Integers
 from estimator.smoothing.changes.elsewhere import FAR_M, Place, Seen, clear_place, seen_of
 from estimator.smoothing.problem.solve import Problem

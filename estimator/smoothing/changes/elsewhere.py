@@ -5,9 +5,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from estimator.fusion.ledger import RANGE
-from estimator.fusion.modes import Mode, Sought, costs_of, find_modes, residuals_of
-from estimator.fusion.nodes import NodeState
+from estimator.fusion.entering.modes import Mode, Sought, costs_of, find_modes, residuals_of
+from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.nodes import NodeState
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.smoothing.problem.solve import Problem

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion.ledger import RANGE, RSSI
-from estimator.fusion.modes import CAUCHY, costs_of
+from estimator.fusion.entering.modes import CAUCHY, costs_of
+from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.graph.robust import cauchy_cost

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from estimator.fusion import physics
 from estimator.fusion.images import Image, mirrored, turned_about
-from estimator.fusion.ledger import RANGE, RSSI
-from estimator.fusion.silence import SILENT_S
+from estimator.fusion.memory.ledger import RANGE, RSSI
+from estimator.fusion.motion.silence import SILENT_S
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.smoothing.keyframes.layout import Walk

@@ -6,10 +6,10 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from estimator.fusion.nodes import NodeState
-from estimator.fusion.pairs import UNTOLD_POWER
-from estimator.fusion.prior import Key, Prior
-from estimator.fusion.state import FusionState
+from estimator.fusion.entering.technologies import UNTOLD_POWER
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.prior import Key, Prior
+from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.graph.variable import Variable

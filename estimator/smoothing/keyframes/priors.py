@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.fusion import physics
-from estimator.fusion.calibration import bias_sigma_m, scale_sigma
-from estimator.fusion.prior import Key
+from estimator.fusion.learned.calibration import bias_sigma_m, scale_sigma
+from estimator.fusion.memory.prior import Key
 from estimator.graph.dense import Array, Indices
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import PLACES, STATES

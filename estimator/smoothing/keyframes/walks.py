@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion.free import free_motion
+from estimator.fusion.motion.free import free_motion
 from estimator.graph.dense import Array
 from estimator.graph.kernels import half_inverse
 

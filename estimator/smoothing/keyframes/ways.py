@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion.silence import wandered_m2
+from estimator.fusion.motion.silence import wandered_m2
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 

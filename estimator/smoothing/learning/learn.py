@@ -10,8 +10,8 @@ import numpy as np
 from msgspec.structs import replace
 from numba import njit
 
-from estimator.fusion.calibration import scale_sigma, told_of, uncalibrated
-from estimator.fusion.state import FusionState
+from estimator.fusion.learned.calibration import scale_sigma, told_of, uncalibrated
+from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.walks import STATES, Motion
 from estimator.smoothing.learning.slips import Doubts, admit, doubts_of, find_slips

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
-from estimator.fusion.state import FusionState
+from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.walks import Motion
 from estimator.smoothing.problem.solve import Problem

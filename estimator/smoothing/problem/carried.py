@@ -6,7 +6,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from estimator.fusion.prior import SIZES, Key, Prior
+from estimator.fusion.memory.prior import SIZES, Key, Prior
 from estimator.graph.dense import Array, Indices
 from estimator.graph.kernels import Integers
 from estimator.graph.kirchhoff import marginalised

@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.fusion.prior import Prior
+from estimator.fusion.memory.prior import Prior
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.graph.robust import Weighted, prior_cost, total_cost

@@ -7,8 +7,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from estimator.fusion import physics
-from estimator.fusion.ledger import BEARING, RANGE
-from estimator.fusion.noise import single_sigma
+from estimator.fusion.learned.noise import single_sigma
+from estimator.fusion.memory.ledger import BEARING, RANGE
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.smoothing.keyframes.ends import Stood

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from estimator.fusion.ledger import RSSI
+from estimator.fusion.memory.ledger import RSSI
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.smoothing.keyframes.ends import FREE, UNIT, Stood

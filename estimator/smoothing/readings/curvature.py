@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from estimator.fusion.ledger import RANGE, RSSI
+from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.range import range_slope

@@ -54,7 +54,7 @@ def excess(link: Integers, alike: Array, residual: Array) -> Excess:
 
     Args:
         link: number of each one's link, m; readings of a link in order of epoch.
-        alike: which number in its row of alike readings each is, m: see `fusion.links`.
+        alike: which number in its row of alike readings each is, m: see `fusion.learned.links`.
         residual: measured less predicted, m (m): only how it scatters on a link counts.
     """
     rungs, counts = np.array((0.0, *physics.EXCESS_M)), np.array(physics.EXCESS_COUNTS)

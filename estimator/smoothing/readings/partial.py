@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.fusion.ledger import BODY_BEARING
+from estimator.fusion.memory.ledger import BODY_BEARING
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.ends import FIXED, FREE, UNIT, Table, place_ends
 from estimator.smoothing.keyframes.numbers import Numbers

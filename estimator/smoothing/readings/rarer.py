@@ -17,7 +17,7 @@ def once_a_second(t: Array, link: Integers, alike: Array) -> tuple[Integers, Arr
     Args:
         t: epochs, those of one link in order, m (s).
         link: number of each one's link, m; −1: it is of none, and stays.
-        alike: which number in its row of alike readings each is, m: see `fusion.links`.
+        alike: which number in its row of alike readings each is, m: see `fusion.learned.links`.
 
     Returns:
         Which readings these are; and what `alike` would be of them, m, as it is of the others.

@@ -7,10 +7,11 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.fusion import echoes, physics
-from estimator.fusion.ledger import BEARING, ECHO, GYRO_BIAS, RANGE, RSSI
-from estimator.fusion.noise import LearnedNoise
-from estimator.fusion.pairs import UNTOLD_POWER
+from estimator.fusion import physics
+from estimator.fusion.entering.technologies import UNTOLD_POWER
+from estimator.fusion.learned.noise import LearnedNoise
+from estimator.fusion.memory.ledger import BEARING, ECHO, GYRO_BIAS, RANGE, RSSI
+from estimator.fusion.readings import echoes
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import wrap

@@ -3,7 +3,7 @@
 import numpy as np
 
 from estimator.fusion import physics
-from estimator.fusion.ledger import RSSI
+from estimator.fusion.memory.ledger import RSSI
 from estimator.graph.dense import Array
 from estimator.graph.robust import Weighted, weigh
 from estimator.smoothing.readings.rows import Rows

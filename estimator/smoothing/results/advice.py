@@ -10,11 +10,11 @@ import numpy as np
 
 from estimator.evidence import Advice, Suggestion
 from estimator.fusion import physics
-from estimator.fusion.introduce import tuple_of
-from estimator.fusion.ledger import RANGE
-from estimator.fusion.nodes import NodeState
-from estimator.fusion.pairs import UNTOLD_POWER
-from estimator.fusion.state import FusionState
+from estimator.fusion.entering.introduce import tuple_of
+from estimator.fusion.entering.technologies import UNTOLD_POWER
+from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 
 SUGGESTIONS_MAX = 5

@@ -12,10 +12,10 @@ import numpy as np
 
 from estimator.evidence import Evidence, EvidenceKind, Measurement
 from estimator.fusion import physics
+from estimator.fusion.entering.introduce import tuple_of, upper_triangle
 from estimator.fusion.images import doubt_m2
-from estimator.fusion.introduce import tuple_of, upper_triangle
-from estimator.fusion.ledger import BEARING, BODY_BEARING, RANGE, RSSI
-from estimator.fusion.state import FusionState
+from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI
+from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.images.otherwise import Mode, otherwise
 from estimator.smoothing.keyframes.layout import Layout

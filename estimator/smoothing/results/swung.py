@@ -1,10 +1,10 @@
-"""What headings that are hardly known do to the places of a solved chain: see `fusion.swings`."""
+"""What headings that are hardly known do to the places of a solved chain: see `fusion.motion.swings`."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.fusion.swings import LOOSE_RAD, arc_m2, swung_m2
+from estimator.fusion.motion.swings import LOOSE_RAD, arc_m2, swung_m2
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import HEADING, STATES

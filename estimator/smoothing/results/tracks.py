@@ -6,8 +6,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from estimator.estimate import TrackPoint
-from estimator.fusion.free import free_motion
-from estimator.fusion.introduce import tuple_of, upper_triangle
+from estimator.fusion.entering.introduce import tuple_of, upper_triangle
+from estimator.fusion.motion.free import free_motion
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.layout import Layout, Walk
 from estimator.smoothing.keyframes.walks import led_by

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from estimator.fusion.descent import SOLVED, Found
-from estimator.fusion.ledger import RANGE, RSSI
-from estimator.fusion.links import ECHO_M, ECHO_ODDS, ERROR, KEPT, NEW
+from estimator.fusion.learned.links import ECHO_M, ECHO_ODDS, ERROR, KEPT, NEW
+from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.physics import ECHOES
-from estimator.fusion.rows import EXTRA, FIELDS, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
+from estimator.fusion.rows.descent import SOLVED, Found
+from estimator.fusion.rows.rows import EXTRA, FIELDS, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
 from estimator.fusion.update import odd, tally
 from estimator.graph.dense import Array
 

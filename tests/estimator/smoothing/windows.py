@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.linalg import block_diag
 
-from estimator.fusion.prior import Prior
-from estimator.fusion.state import FusionState
+from estimator.fusion.memory.prior import Prior
+from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node

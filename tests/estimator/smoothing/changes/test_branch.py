@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from estimator.fusion.introduce import NO_PRIOR_SIGMA_M, place, retire
-from estimator.fusion.ledger import ECHO
-from estimator.fusion.state import FusionState
+from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, place, retire
+from estimator.fusion.memory.ledger import ECHO
+from estimator.fusion.memory.state import FusionState
 from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from estimator.fusion.ledger import RANGE
-from estimator.fusion.state import FusionState
+from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.state import FusionState
 from estimator.fusion.tick import fold_tick
 from estimator.graph.kernels import Integers
 from estimator.measurements import AnyReading

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from estimator.estimate import NodeEstimate, Notice
-from estimator.fusion.ledger import RANGE
-from estimator.fusion.state import FusionState
+from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.state import FusionState
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node

@@ -6,7 +6,7 @@ from msgspec.structs import replace
 
 from estimator.estimate import NodeEstimate
 from estimator.fusion.images import Image, Otherwise
-from estimator.fusion.nodes import Mode
+from estimator.fusion.memory.nodes import Mode
 from estimator.measurements import AnyReading
 from estimator.measurements.range import Range
 from estimator.smoothing import extent

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from estimator.fusion.silence import wandered_m2
+from estimator.fusion.motion.silence import wandered_m2
 from estimator.smoothing.keyframes.ways import LAID, Laid, Way
 
 Steps = np.ndarray[tuple[int, int], np.dtype[np.float64]]

@@ -7,8 +7,8 @@ import pytest
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.ledger import Ledger
-from estimator.fusion.state import FusionState
+from estimator.fusion.memory.ledger import Ledger
+from estimator.fusion.memory.state import FusionState
 from estimator.fusion.tick import flush, fold_tick, keep_poses
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement

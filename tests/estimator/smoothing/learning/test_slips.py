@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from estimator.fusion.state import FusionState
+from estimator.fusion.memory.state import FusionState
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from estimator.fusion.prior import Prior
+from estimator.fusion.memory.prior import Prior
 from estimator.graph.dense import Array
 from estimator.measurements.retire import Retire
 from estimator.smoothing.chain.chain import Chain

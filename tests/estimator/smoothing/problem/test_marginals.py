@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from estimator.fusion.prior import Key, Prior
+from estimator.fusion.memory.prior import Key, Prior
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement

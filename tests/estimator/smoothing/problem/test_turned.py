@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from estimator.fusion.state import FusionState
+from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.simulate import scenario

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from estimator.fusion.ledger import RANGE, RSSI
+from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.graph.dense import Array
 from estimator.graph.robust import Weighted
 from estimator.measurements.range import predict_range

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.fusion import physics
-from estimator.fusion.ledger import BODY_BEARING, RANGE, RSSI
+from estimator.fusion.memory.ledger import BODY_BEARING, RANGE, RSSI
 from estimator.graph.dense import Array
 from estimator.measurements import bearing
 from estimator.smoothing.keyframes.ends import Ends, place_ends

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from estimator.fusion.links import ALIKE, NEW, follow
+from estimator.fusion.learned.links import ALIKE, NEW, follow
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement

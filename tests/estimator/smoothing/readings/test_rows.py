@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from estimator.fusion import physics
-from estimator.fusion.noise import LearnedNoise
+from estimator.fusion.learned.noise import LearnedNoise
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node, Role

@@ -11,7 +11,7 @@ from estimator.measurements.rssi import Rssi
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import BatchSmoother
 from tests.estimator.ellipses import INSIDE, outside
-from tests.estimator.fusion.test_swings import WAY_M, ahead
+from tests.estimator.fusion.motion.test_swings import WAY_M, ahead
 
 
 def incident(heading_sigma_rad: float) -> list[AnyReading]:

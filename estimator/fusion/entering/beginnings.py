@@ -1,0 +1,208 @@
+"""Where an undecided node is: every place that its sightings allow, and whether one is clearly the best.
+
+A range-only node starts as a ring, and after a straight path as two mirror images (estimation.md, point 7).
+It enters the graph only once the second mode is clearly worse; the window is then solved again with all its
+sightings, each used once. Who moves cannot wait for that: what is older tells ever less of where he is now.
+After some seconds he is shown at the best mode, and the others are told as images of it (decision 0010).
+"""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+from msgspec.structs import replace
+
+from estimator.fusion import physics
+from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, Entered, place
+from estimator.fusion.entering.modes import Mode, Sought, costs_of, find_modes, residuals_of, short_costs
+from estimator.fusion.entering.sightings import Sightings, heard_between, of_node
+from estimator.fusion.entering.technologies import path_loss_states, technology_states
+from estimator.fusion.images import Otherwise, mirrored
+from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.silence import gone_m2
+from estimator.graph.dense import Array
+from estimator.measurements.node import MOVING_ROLES
+
+
+class Chosen(NamedTuple):
+    """A beginning: the mode, others that fit, whether it is decided, and the height prior behind it (m)."""
+
+    mode: Mode
+    others: list[Mode]
+    sure: bool
+    up_m: float
+    up_sigma_m: float
+
+
+def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None:
+    """Try undecided nodes that have been seen anew, and begin those whose position is decided.
+
+    Who moves is begun where he may be when he has been heard for `physics.UNSEEN_S`, decided or not.
+
+    Args:
+        state: the fusion, changed in place.
+        sightings_s: how old sightings of a standing node may be (s).
+    """
+    covariance: Array | None = None
+    for name, seen in list(state.sightings.items()):
+        node = state.nodes[name]
+        if node.mode != "undecided":
+            del state.sightings[name]
+            continue
+        moving = node.role in MOVING_ROLES
+        tried = state.tried.get(name, 0)
+        often = seen >= max(physics.SIGHTINGS_MIN, min(tried + 10, 1.2 * tried))
+        since_t, until_t = heard_between(state, node) if moving else (0.0, 0.0)
+        late = until_t - since_t >= physics.UNSEEN_S
+        if not often and not late:
+            continue
+        state.tried[name] = seen
+        kept_s = sightings_s
+        if moving:
+            kept_s = physics.UNSEEN_S if late else physics.MOVING_SIGHTINGS_S
+        sightings = of_node(state, node, state.newest_t - kept_s)
+        least = physics.UNSEEN_SIGHTINGS_MIN if late else physics.SIGHTINGS_MIN
+        if sightings is None or len(sightings.t) < least:
+            continue
+        owner = state.sources[sightings.source]
+        ranged = sightings.kind == RANGE
+        states = technology_states(state, owner) if ranged else path_loss_states(state, owner)
+        if covariance is None or len(covariance) != state.graph.size:
+            covariance = state.graph.covariance()
+        rows = state.graph.rows(states)
+        chosen = _choose(state, node, sightings, state.graph.value(states).copy(), covariance[rows, rows])
+        if chosen is not None and (chosen.sure or (late and _is_place(sightings, chosen.mode))):
+            _begin(state, node, sightings, chosen, since_t)
+            covariance = None
+
+
+def _choose(
+    state: FusionState, node: NodeState, seen: Sightings, extra: Array, extra_covariance: Array
+) -> Chosen | None:
+    moving = node.role in MOVING_ROLES
+    sigma = seen.sigma * state.learned(state.sources[seen.source]).factor
+    spread = seen.spread
+    if moving:
+        spread = np.hypot(spread, _walked_m(node, seen.t.max() - seen.t))
+    if seen.kind == RANGE:
+        sigma = np.hypot(sigma, spread)
+    elif moving:
+        sigma = np.hypot(sigma, spread * _db_per_m(seen.value, extra))
+    up_sigma = physics.UNDECIDED_MOVING_UP_SIGMA_M if moving else physics.UNDECIDED_UP_SIGMA_M
+    kind: Literal["range", "rssi"] = "range" if seen.kind == RANGE else "rssi"
+    sought = Sought(
+        kind=kind,
+        points=seen.points,
+        value=seen.value,
+        sigma=sigma,
+        up_m=float(seen.points[:, 2].mean()),
+        up_sigma_m=up_sigma,
+        extra=extra,
+        extra_covariance=extra_covariance,
+    )
+    modes = find_modes(sought)
+    if not modes:
+        return None
+    outliers = state.learned(state.sources[seen.source]).outliers(physics.NOISES[seen.kind][0])
+    best = modes[0]
+    odd = [_odd_cost(mode, sought, seen.alike, outliers) for mode in modes]
+    others = [
+        mode
+        for mode, cost in zip(modes[1:], odd[1:], strict=True)
+        if min(mode.cost - best.cost, cost - odd[0]) < physics.MODE_MARGIN
+    ]
+    sure = best.sigma_m <= physics.DECIDED_SIGMA_M[kind] and not others
+    return Chosen(best, others, sure, sought.up_m, up_sigma)
+
+
+def _odd_cost(mode: Mode, sought: Sought, alike: Array, outliers: float) -> float:
+    """What a mode costs, in log likelihood, where readings far too long, or too weak, are nothing unusual.
+
+    By its tails a Cauchy loss would rather believe in a place from which echoes are less too long, though
+    sharp ranges contradict it.
+
+    Args:
+        mode: the mode.
+        sought: what was measured.
+        alike: how many readings of its link share an error, as each counts, m.
+        outliers: share of the readings that are.
+    """
+    ranged, m = sought.kind == "range", len(sought.value)
+    usual = physics.RANGE_NOISE if ranged else physics.RSSI_NOISE
+    residual = residuals_of(sought, mode.position_m, mode.extra)
+    noise = np.tile((outliers, usual.shift, usual.spread), (m, 1))
+    costs = costs_of(residual, sought.sigma, noise, np.full(m, ranged), alike)
+    if ranged:
+        costs += short_costs(residual, sought.sigma)
+    off, up = mode.extra - sought.extra, (mode.position_m[2] - sought.up_m) / sought.up_sigma_m
+    return float(costs.sum() + 0.5 * (off @ np.linalg.solve(sought.extra_covariance, off) + up**2))
+
+
+def _is_place(seen: Sightings, mode: Mode) -> bool:
+    """Whether a mode is a place at all: about one radio everybody's may be anywhere on its ring.
+
+    A covariance is linear, and would be sure of the side on which somebody is shown.
+    """
+    return mode.sigma_m < _farthest_m(seen, mode)
+
+
+def _farthest_m(seen: Sightings, mode: Mode) -> float:
+    """From a mode to the farthest place that was measured from (m)."""
+    return float(np.hypot(*(seen.points[:, :2] - mode.position_m[:2]).T).max())
+
+
+def _walked_m(node: NodeState, s: Array) -> Array:
+    """How far along each axis one may walk in times, m (m)."""
+    speed_mps, memory_s = physics.SPEED_SIGMA_MPS[node.role][0], physics.SPEED_MEMORY_S[node.role]
+    return np.sqrt([gone_m2(speed_mps, memory_s, each_s, 0.0) for each_s in s.tolist()])
+
+
+def _db_per_m(dbm: Array, path_loss: Array) -> Array:
+    """By how much powers change with the distance, where they seem to come from, m (dB/m)."""
+    exponent = max(float(path_loss[1]), 1.0)
+    distance_m = 10.0 ** np.clip((path_loss[0] - dbm) / (10.0 * exponent), 0.0, 2.5)
+    return np.asarray(10.0 * exponent / np.log(10.0) / distance_m)
+
+
+def _begin(state: FusionState, node: NodeState, seen: Sightings, chosen: Chosen, since_t: float) -> None:
+    mode = chosen.mode
+    t = float(seen.t.max())
+    state.due = True
+    state.count("fused", len(seen.t))
+    here = (float(mode.position_m[0]), float(mode.position_m[1]), chosen.up_m)
+    if node.role not in MOVING_ROLES:
+        place(state, node, t, here, (NO_PRIOR_SIGMA_M, NO_PRIOR_SIGMA_M, chosen.up_sigma_m))
+        return
+    # Until the window is solved, which is at once, what the sightings tell stands in the filter.
+    farthest_m = _farthest_m(seen, mode)
+    if seen.kind == RANGE:
+        # On a ring nobody is farther from its radio than its radius.
+        reach_m = farthest_m + float(_walked_m(node, np.array([t - since_t]))[0])
+    else:
+        reach_m = max(physics.REACH_M, farthest_m)
+    centre = (*seen.points[:, :2].mean(axis=0).tolist(), chosen.up_m)
+    entered = Entered(since_t, centre, (reach_m, reach_m, chosen.up_sigma_m))
+    sigma_m = min(mode.sigma_m, reach_m)
+    since_t = since_t if state.window_t is None else max(float(np.floor(since_t)), state.window_t)
+    place(
+        state,
+        replace(node, otherwise=_otherwise(node, chosen, since_t)),
+        t,
+        mode.position_m,
+        (sigma_m, sigma_m, mode.up_sigma_m),
+        entered,
+    )
+
+
+def _otherwise(node: NodeState, chosen: Chosen, since_t: float) -> tuple[Otherwise, ...]:
+    """The other modes as images of the best one, in the line that is as far from both."""
+    best = chosen.mode
+    odds = [float(np.exp(best.cost - mode.cost)) for mode in chosen.others]
+    total, found = 1.0 + sum(odds), []
+    for mode, each in zip(chosen.others, odds, strict=True):
+        across = (mode.position_m - best.position_m)[:2]
+        middle = 0.5 * (mode.position_m + best.position_m)[:2]
+        image = mirrored(middle, float(np.arctan2(across[0], -across[1])))
+        found.append(Otherwise(node.index, each / total, image, since_t, image))
+    return tuple(found)

@@ -1,0 +1,33 @@
+"""The blocks of technologies in the Kirchhoff matrix: scale and bias of ranges, path loss of powers."""
+
+from estimator.fusion import physics
+from estimator.fusion.learned.calibration import bias_sigma_m, scale_sigma
+from estimator.fusion.memory.state import FusionState
+from estimator.graph.variable import Variable
+
+SENT = "sent"
+"""Owner of the path-loss states of radios that tell the power they send with; "" for those that do not."""
+UNTOLD_POWER = "rssi "
+TOLD_POWER = UNTOLD_POWER + SENT
+"""Technologies of signals; the owner of their path-loss states stands after the first."""
+
+
+def technology_states(state: FusionState, technology: str) -> Variable:
+    """The block of scale and bias of a ranging technology, added when first used."""
+    states = Variable("range", technology)
+    if states not in state.graph:
+        scale = scale_sigma(state.uncalibrated.get(technology, 0.0), state.narrow_sigma(technology))
+        state.graph.add_node(states, (0.0, 0.0), (scale, bias_sigma_m(technology)))
+    return states
+
+
+def path_loss_states(state: FusionState, technology: str) -> Variable:
+    """The block of P0 and n of radios that tell the power they send with, or of the others."""
+    states = Variable("rssi", technology[len(UNTOLD_POWER) :])
+    if states not in state.graph:
+        state.graph.add_node(
+            states,
+            (physics.RSSI_POWER_DBM, physics.RSSI_EXPONENT),
+            (physics.RSSI_POWER_SIGMA_DB, physics.RSSI_EXPONENT_SIGMA),
+        )
+    return states

@@ -1,0 +1,1 @@
+"""What is known by now of units, radios and links: their noise, their calibration, what readings share."""

@@ -1,0 +1,120 @@
+"""The fusion's state as bytes and back, exact to the last bit."""
+
+import msgspec
+
+from estimator.fusion.learned.links import Links
+from estimator.fusion.learned.noise import LearnedNoise
+from estimator.fusion.memory.ledger import COLUMNS
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.prior import Key, Prior
+from estimator.fusion.memory.state import FusionState
+from estimator.graph.kirchhoff import Kirchhoff
+from estimator.graph.record import ArrayRecord, pack, unpack
+from estimator.graph.variable import Variable
+from estimator.inertial.record import NavigationRecord, navigation_of
+from estimator.inertial.record import record_of as navigation_record_of
+from estimator.measurements import AnyReading
+
+
+class PriorRecord(msgspec.Struct, frozen=True, array_like=True):
+    """`Prior` in plain values."""
+
+    keys: list[Key]
+    arrays: tuple[ArrayRecord, ArrayRecord, ArrayRecord]
+    epochs: dict[int, float]
+
+
+class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
+    """`FusionState` in plain values."""
+
+    origin_wgs84: tuple[float, float, float] | None
+    variables: list[Variable]
+    arrays: tuple[ArrayRecord, ArrayRecord, ArrayRecord]
+    nodes: list[NodeState]
+    sightings: dict[str, int]
+    waiting: tuple[AnyReading, ...]
+    noise: dict[str, LearnedNoise]
+    links: tuple[list[tuple[str, str, str]], ArrayRecord]
+    reference_pa: float | None
+    counts: dict[str, int]
+    said: list[str]
+    tried: dict[str, int]
+    tables: dict[str, ArrayRecord]
+    owners: tuple[str, ...]
+    sources: tuple[str, ...]
+    newest_t: float
+    due: bool
+    suspected: bool
+    exposed: bool
+    begun_t: float | None
+    refreshed_t: float
+    window_t: float | None
+    prior: PriorRecord | None
+    uncalibrated: dict[str, float]
+    bent_m: float
+    navigations: dict[str, NavigationRecord]
+
+
+def record_of(state: FusionState) -> FusionRecord:
+    """The state's record; it shares nothing that changes."""
+    matrix, vector, reference = state.graph.storage()
+    prior = state.prior
+    return FusionRecord(
+        state.origin_wgs84,
+        list(state.graph.starts),
+        (pack(matrix), pack(vector), pack(reference)),
+        list(state.nodes.values()),
+        dict(state.sightings),
+        state.waiting,
+        dict(state.noise),
+        (list(state.links.numbers), pack(state.links.table)),
+        state.reference_pa,
+        dict(state.counts),
+        list(state.said),
+        dict(state.tried),
+        {name: pack(state.ledger.table(name)) for name in COLUMNS},
+        state.owners,
+        state.sources,
+        state.newest_t,
+        state.due,
+        state.suspected,
+        state.exposed,
+        state.begun_t,
+        state.refreshed_t,
+        state.window_t,
+        None
+        if prior is None
+        else PriorRecord(
+            list(prior.keys),
+            (pack(prior.matrix), pack(prior.vector), pack(prior.reference)),
+            dict(prior.epochs),
+        ),
+        dict(state.uncalibrated),
+        state.bent_m,
+        {name: navigation_record_of(known) for name, known in state.navigations.items()},
+    )
+
+
+def state_of(record: FusionRecord) -> FusionState:
+    """The state that a record was made of."""
+    state = FusionState(record.origin_wgs84)
+    matrix, vector, reference = (unpack(r) for r in record.arrays)
+    state.graph = Kirchhoff.of(record.variables, matrix, vector, reference)
+    state.nodes = {n.node: n for n in record.nodes}
+    state.sightings, state.waiting = record.sightings, record.waiting
+    state.noise, state.reference_pa, state.counts = record.noise, record.reference_pa, record.counts
+    state.said, state.tried = dict.fromkeys(record.said), record.tried
+    links, newest = record.links
+    state.links = Links({link: number for number, link in enumerate(links)}, unpack(newest))
+    state.owners, state.sources = record.owners, record.sources
+    for name in COLUMNS:
+        state.ledger.replace(name, unpack(record.tables[name]))
+    state.newest_t, state.due, state.begun_t = record.newest_t, record.due, record.begun_t
+    state.suspected, state.exposed = record.suspected, record.exposed
+    state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
+    state.uncalibrated, state.bent_m = record.uncalibrated, record.bent_m
+    state.navigations = {name: navigation_of(known) for name, known in record.navigations.items()}
+    if record.prior is not None:
+        matrix, vector, reference = (unpack(a) for a in record.prior.arrays)
+        state.prior = Prior(tuple(record.prior.keys), matrix, vector, reference, record.prior.epochs)
+    return state

@@ -1,0 +1,111 @@
+"""What the tracker keeps of each node beside its block in the Kirchhoff matrix."""
+
+from functools import lru_cache
+from typing import Literal
+
+import msgspec
+
+from estimator.estimate import Covariance6, Vector3
+from estimator.fusion.images import Otherwise
+from estimator.fusion.learned.calibration import UNTOLD, Told
+from estimator.fusion.learned.standing import Standing
+from estimator.graph.variable import Variable
+from estimator.measurements.node import Role
+
+Mode = Literal["undecided", "fixed", "static", "unit", "free", "retired"]
+"""undecided: no position yet; fixed: known exactly (the base); static: a position that stays; unit: moves
+by the displacements of its PDR unit; free: moves with a velocity of its own; retired: marginalised."""
+
+
+class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=False):
+    """One node, as it stands after a tick.
+
+    Attributes:
+        node: the node.
+        role: what it is.
+        index: number of its block in the ledger; a node that is moved gets a new one.
+        named: its role was told by a `node` reading, not guessed from the first reading that named it.
+        mode: how its position is held.
+        t: epoch of its newest fused reading.
+        pose_t: epoch that its position refers to, where it moves.
+        unit_t: epoch of its unit's newest displacement.
+        place_m: its position where it is fixed or retired.
+        covariance_m2: of `place_m`, where it is retired.
+        heading_rad: as told by its `node` reading.
+        heading_sigma_rad: as told by its `node` reading.
+        unit_heading_rad: newest heading that its unit reported, in the unit's frame.
+        speed_mps: horizontal speed by its newest displacement.
+        trail: epochs, and displacements summed up to them in the unit's frame: newest seconds only.
+        still: headings that its unit has reported since it stands still.
+        way_m: length of its way so far.
+        pressure_t: epoch of its newest fused pressure.
+        heights: heights have been told of it, by a fix, an altimeter or an air pressure.
+        level: its unit has never reported a change of height.
+        unseen_up_m2: variance of its height by the stairs that such a unit does not see.
+        turned: its unit's frame may be turned by any angle: every window is tried with several.
+        bias_told: what readings say of its unit's gyro bias without its prior.
+        otherwise: where it may be instead, by what readings tell as well.
+        walk_factors: learned variances of its unit over the assumed ones: of displacements, of its heading.
+    """
+
+    node: str
+    role: Role
+    index: int = -1
+    named: bool = False
+    mode: Mode = "undecided"
+    t: float
+    pose_t: float = 0.0
+    unit_t: float | None = None
+    place_m: Vector3 | None = None
+    covariance_m2: Covariance6 | None = None
+    heading_rad: float | None = None
+    heading_sigma_rad: float | None = None
+    unit_heading_rad: float | None = None
+    speed_mps: float | None = None
+    trail: tuple[tuple[float, float, float, float], ...] = ()
+    still: Standing | None = None
+    way_m: float = 0.0
+    pressure_t: float | None = None
+    heights: bool = False
+    level: bool = True
+    unseen_up_m2: float = 0.0
+    walk_factors: tuple[float, float] = (1.0, 1.0)
+    turned: bool = False
+    bias_told: Told = UNTOLD
+    otherwise: tuple[Otherwise, ...] = ()
+
+    @property
+    def position(self) -> Variable:
+        """The block of its position."""
+        return _blocks(self.node)[0]
+
+    @property
+    def unit(self) -> Variable:
+        """The block of its PDR unit's errors."""
+        return _blocks(self.node)[1]
+
+    @property
+    def velocity(self) -> Variable:
+        """The block of its velocity."""
+        return _blocks(self.node)[2]
+
+    @property
+    def decided(self) -> bool:
+        """Whether readings can be held against its position."""
+        return self.mode in ("fixed", "static", "unit", "free")
+
+    @property
+    def doubt_up_m2(self) -> float:
+        """What its height is doubted by beside the Kirchhoff matrix: where nothing tells heights (m²)."""
+        return 0.0 if self.heights else self.unseen_up_m2
+
+    @property
+    def moving(self) -> bool:
+        """Whether its position changes with time."""
+        return self.mode in ("unit", "free")
+
+
+@lru_cache(maxsize=4096)
+def _blocks(node: str) -> tuple[Variable, Variable, Variable]:
+    """A node's blocks: each tick asks for all of them several times."""
+    return Variable("position", node), Variable("unit", node), Variable("velocity", node)

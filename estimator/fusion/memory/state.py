@@ -1,0 +1,169 @@
+"""Everything that the fusion remembers between two ticks."""
+
+import math
+from typing import Literal, Self
+
+import numpy as np
+
+from estimator.estimate import Notice, NoticeCode, Vector3
+from estimator.fusion import physics
+from estimator.fusion.learned.calibration import narrow_sigma
+from estimator.fusion.learned.gyros import bias_sigma_radps
+from estimator.fusion.learned.links import Links
+from estimator.fusion.learned.noise import LearnedNoise
+from estimator.fusion.memory.ledger import RANGE, Ledger
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.prior import Prior
+from estimator.graph.dense import Array
+from estimator.graph.kirchhoff import Kirchhoff
+from estimator.inertial.navigation import Navigation
+from estimator.inertial.resting import RESTED_RADPS
+from estimator.measurements import AnyReading
+from estimator.measurements.node import Role
+
+Count = Literal["fused", "not_fused", "outlier"]
+
+
+class FusionState:
+    """The Kirchhoff state and what surrounds it; copying is cheap, because nearly every record is immutable.
+
+    Attributes:
+        origin_wgs84: latitude (°), longitude (°), height (m) of the local origin, if known.
+        graph: L, b and x.
+        nodes: every node ever introduced, in order of introduction.
+        sightings: how many each undecided node has.
+        waiting: readings whose epoch no displacement has covered yet.
+        noise: what was learned of each technology's noise.
+        links: the newest reading of each technology between two nodes.
+        reference_pa: the base's newest air pressure.
+        counts: readings fused, not fused, weighed as outliers.
+        said: notices that are given once.
+        tried: how many sightings an undecided node had when it was last tried.
+        newest_t: end of the newest tick, Unix seconds.
+        bent_m: how far updates have bent the window since it was last solved (m).
+        due: the window is to be solved again at once.
+        suspected: the window is to be solved again soon: the newest readings disagree with a standing node's
+            place, or what was just found has bent what follows.
+        exposed: somebody may be followed to an image of where he goes: the window is to be solved again
+            soon.
+        begun_t: end of the first tick with a node in it.
+        refreshed_t: end of the tick at which the window was last solved.
+        window_t: epoch of the window's first keyframe.
+        prior: what is known from before the window.
+        navigations: of the boots whose units report raw samples, by node.
+        uncalibrated: probability that a ranging technology is not calibrated, where it reaches odometry.
+        ledger: what has been fused, as tables.
+        owners: the node of each number in the ledger.
+        sources: the technologies of the ledger's readings.
+        notices: of this tick.
+    """
+
+    def __init__(self, origin_wgs84: tuple[float, float, float] | None = None) -> None:
+        self.origin_wgs84 = origin_wgs84
+        self.graph = Kirchhoff()
+        self.nodes: dict[str, NodeState] = {}
+        self.sightings: dict[str, int] = {}
+        self.waiting: tuple[AnyReading, ...] = ()
+        self.noise: dict[str, LearnedNoise] = {}
+        self.links = Links()
+        self.reference_pa: float | None = None
+        self.counts: dict[str, int] = {"fused": 0, "not_fused": 0, "outlier": 0}
+        self.said: dict[str, None] = {}
+        self.tried: dict[str, int] = {}
+        self.newest_t = 0.0
+        self.bent_m = 0.0
+        self.due = False
+        self.suspected = False
+        self.exposed = True
+        self.begun_t: float | None = None
+        self.refreshed_t = 0.0
+        self.window_t: float | None = None
+        self.prior: Prior | None = None
+        self.navigations: dict[str, Navigation] = {}
+        self.uncalibrated: dict[str, float] = {}
+        self.ledger = Ledger()
+        self.owners: tuple[str, ...] = ()
+        self.sources: tuple[str, ...] = ()
+        self.notices: list[Notice] = []
+
+    def copy(self) -> Self:
+        """An independent copy, without this tick's notices."""
+        twin = object.__new__(type(self))
+        twin.__dict__.update(self.__dict__)
+        twin.graph, twin.ledger = self.graph.copy(), self.ledger.copy()
+        twin.nodes, twin.links, twin.sightings = dict(self.nodes), self.links.copy(), dict(self.sightings)
+        twin.noise, twin.uncalibrated = dict(self.noise), dict(self.uncalibrated)
+        twin.counts, twin.said, twin.tried = dict(self.counts), dict(self.said), dict(self.tried)
+        twin.navigations, twin.notices = dict(self.navigations), []
+        return twin
+
+    def count(self, what: Count, number: int = 1) -> None:
+        """Count readings."""
+        self.counts[what] += number
+
+    def say(self, code: NoticeCode, t: float, node: str | None, text: str, once: str | None = None) -> None:
+        """Give a notice; one with a key `once` is given only once."""
+        if once is not None:
+            if once in self.said:
+                return
+            self.said[once] = None
+        self.notices.append(Notice(code=code, t=t, node=node, text=text))
+
+    def node_of(self, name: str, role: Role, t: float) -> NodeState:
+        """The node, introduced with a guessed role if no reading has named it before."""
+        found = self.nodes.get(name)
+        if found is None:
+            found = self.nodes[name] = NodeState(node=name, role=role, t=t, index=self.number(name))
+        return found
+
+    def number(self, name: str) -> int:
+        """A new number in the ledger for a node, which enters or lies elsewhere now."""
+        self.links.renew(name)
+        self.owners = (*self.owners, name)
+        return len(self.owners) - 1
+
+    def source(self, name: str) -> int:
+        """Number of a technology in the ledger."""
+        if name not in self.sources:
+            self.sources = (*self.sources, name)
+        return self.sources.index(name)
+
+    def place(self, node: NodeState) -> Array:
+        """Position of a decided node, 3 (m).
+
+        Raises:
+            KeyError: the node is undecided.
+        """
+        return np.array(node.place_m) if node.place_m is not None else self.graph.value(node.position)
+
+    def base_place(self) -> Vector3:
+        """Where the base stands, or stood if all are retired: the origin, unless it says otherwise."""
+        bases = [n for n in self.nodes.values() if n.role == "base" and n.place_m is not None]
+        base = min(bases, key=lambda n: n.mode == "retired", default=None)
+        return (0.0, 0.0, 0.0) if base is None or base.place_m is None else base.place_m
+
+    def bias_sigma_radps(self, node: NodeState) -> float:
+        """Standard deviation of the prior of the gyro bias of a node's unit (rad/s).
+
+        Where raw samples are navigated, a rest has told it, or displacements say what it is less sure by.
+        """
+        if node.node in self.navigations:
+            return RESTED_RADPS
+        return bias_sigma_radps(node.bias_told, [other.bias_told for other in self.nodes.values()])
+
+    def scale_sigma(self, node: NodeState) -> float:
+        """Standard deviation of the prior of the scale of a node's unit."""
+        return physics.STRAPDOWN_SCALE_SIGMA if node.node in self.navigations else physics.SCALE_SIGMA
+
+    def narrow_sigma(self, technology: str) -> float:
+        """Standard deviation of a ranging technology's scale where it is calibrated."""
+        learned, pairs, scatter = self.learned(technology), self.ledger.table("pairs"), math.inf
+        if technology in self.sources:
+            mine = (pairs[:, 1] == RANGE) & (pairs[:, 6] == self.sources.index(technology))
+            length_m, sigma_m = (float(np.sum(pairs[mine, column] ** 2)) ** 0.5 for column in (4, 5))
+            scatter = learned.factor * sigma_m / length_m if length_m > 0.0 else math.inf
+        return narrow_sigma(learned.outliers(physics.RANGE_NOISE.outliers), scatter)
+
+    def learned(self, technology: str) -> LearnedNoise:
+        """Noise of a technology, as far as it is known."""
+        return self.noise.get(technology, LearnedNoise())

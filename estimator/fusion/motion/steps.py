@@ -1,0 +1,223 @@
+"""What the displacements of one unit add up to within a tick."""
+
+import math
+from typing import NamedTuple
+
+from msgspec.structs import replace
+
+from estimator.estimate import Vector3
+from estimator.fusion import physics
+from estimator.fusion.learned.standing import stand_on
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.motion.silence import LONGEST_S
+from estimator.fusion.motion.way import Mark
+from estimator.inertial.navigation import Led
+from estimator.inertial.strapdown import RATE_WALK
+from estimator.measurements.displacement import Displacement
+
+TRAIL_S = 4.0
+FIRST_DURATION_S = 1.0
+WALK_M2_PER_M, STAND_M2_PER_S = physics.WALK_M_PER_ROOT_M**2, physics.STAND_M_PER_ROOT_S**2
+FLOOR_M2, CLIMB_M2_PER_M = physics.DISPLACEMENT_FLOOR_M**2, physics.CLIMB_M_PER_ROOT_M**2
+TURN_RAD2_PER_M = physics.HEADING_WALK_RAD_PER_ROOT_M**2
+TURN_RAD2_PER_S = physics.GYRO_WALK_RAD_PER_ROOT_S**2
+BIAS_PER_S, SCALE_PER_S = physics.BIAS_WALK_RADPS_PER_ROOT_S**2, physics.SCALE_WALK_PER_ROOT_S**2
+WARMING_PER_S = RATE_WALK**2
+Noise = tuple[float, float, float, float, float, float]
+"""Variances of east, north, up (m²), ψ (rad²), β (rad²/s²) and s."""
+NOTHING = (0.0,) * 6
+SET_OFF: Noise = (0.0, 0.0, 0.0, 0.0, physics.SET_OFF_BIAS_RADPS**2, 0.0)
+"""What a bias is unsure by of which a standstill has told, once its bearer goes."""
+
+
+class Turn(NamedTuple):
+    """The gyro bias that a standstill has told (ZARU).
+
+    Attributes:
+        t: epoch of the last report that tells it (s).
+        value: the bias (rad/s).
+        sigma: its standard deviation (rad/s).
+        since: variance that it has gained since then (rad²/s²).
+    """
+
+    t: float
+    value: float
+    sigma: float
+    since: float = 0.0
+
+
+class Increment(NamedTuple):
+    """What one displacement adds to a unit's way.
+
+    Attributes:
+        since_t: epoch that the unit's position referred to before it (s).
+        delta_m: displacement in the unit's frame (m).
+        noise: variances that it adds.
+        turn: what a standstill tells, if one has ended or lasted long.
+        too_fast: nobody moves so far in its time.
+    """
+
+    since_t: float
+    delta_m: Vector3
+    noise: Noise
+    turn: Turn | None
+    too_fast: bool
+
+
+class Step:
+    """What one unit has moved in one tick: it takes one displacement after the other.
+
+    Attributes:
+        node: the unit, before the step.
+        delta_m: displacement in the unit's frame (m).
+        duration_s: time that it took (s).
+        noise: variances that it adds.
+        taken: it has taken any.
+    """
+
+    def __init__(self, node: NodeState) -> None:
+        self.node = node
+        self.delta_m: Vector3 = (0.0, 0.0, 0.0)
+        self.duration_s = 0.0
+        self.noise: Noise = NOTHING
+        self._pose_t, self._unit_t = node.pose_t, node.unit_t
+        self._heading_rad, self._speed_mps = node.unit_heading_rad, node.speed_mps
+        self._still, self._way_m = node.still, node.way_m
+        self._level, self._unseen_up_m2 = node.level, node.unseen_up_m2
+        self._marks: list[Mark] = list(node.trail or ((node.pose_t, 0.0, 0.0, 0.0),))
+        self.taken = False
+
+    def take(self, reading: Displacement) -> Increment | None:
+        """Hold a displacement against what its unit reported before; None where that covers its epoch."""
+        t, pose_t, unit_t = reading.t, self._pose_t, self._unit_t
+        if t < pose_t or (unit_t is not None and t <= unit_t):
+            return None
+        start = start_of(reading, pose_t if unit_t is None else unit_t)
+        e, n, u = reading.delta_m
+        duration = min(t - pose_t, LONGEST_S)
+        own = max(t - start, 0.0)
+        length = math.sqrt(e * e + n * n + u * u)
+        across = up = 0.0
+        if start < pose_t and unit_t is not None:
+            share = duration / own
+            across = up = (0.5 * share * (1.0 - share) * length) ** 2
+            e, n, u, length, own = e * share, n * share, u * share, length * share, duration
+        elif start > pose_t:
+            across = (physics.GAP_MPS * min(start - pose_t, LONGEST_S)) ** 2
+            up = 0.1 * across
+        too_fast = length > physics.FASTEST_MPS * max(own, physics.TICK_S)
+        if too_fast:
+            across, up = across + length**2, up + length**2
+        still = own > 0.0 and length < physics.STILL_MPS * own and start <= pose_t
+        turn, sets_off = self._stand(reading, still)
+        if isinstance(reading, Led):
+            up += reading.up_m2 + (physics.STRAPDOWN_SCALE_SIGMA * u) ** 2
+            if reading.rested_radps > 0.0:
+                turn = Turn(t, 0.0, reading.rested_radps)
+        else:
+            up += (physics.SCALE_SIGMA * u) ** 2
+        up += self._climb_m2(reading, length)
+        noise = walk_noise((across, across, up), reading, length, duration)
+        if sets_off:
+            noise = sum_of(noise, SET_OFF)
+        if own > 0.0:
+            self._speed_mps = math.hypot(e, n) / own
+        self._pose_t = self._unit_t = t
+        self._heading_rad, self.taken = reading.heading_rad, True
+        self._way_m += length
+        _, last_e, last_n, last_u = self._marks[-1]
+        self._marks.append((t, last_e + e, last_n + n, last_u + u))
+        before_e, before_n, before_u = self.delta_m
+        self.delta_m = before_e + e, before_n + n, before_u + u
+        self.duration_s += duration
+        self.noise = sum_of(self.noise, noise)
+        return Increment(pose_t, (e, n, u), noise, turn, too_fast)
+
+    def _climb_m2(self, reading: Displacement, length: float) -> float:
+        """What a displacement's height is unsure by because its unit measures none (m²).
+
+        Where nothing else tells heights, the Kirchhoff matrix keeps to the plane, for the unit may yet show
+        that it measures them; what it may have missed is told beside (estimation.md, point 8).
+        """
+        if reading.delta_m[2] != 0.0 or isinstance(reading, Led):
+            self._level, self._unseen_up_m2 = False, 0.0
+        if self._level:
+            self._unseen_up_m2 += CLIMB_M2_PER_M * length
+        if not self.node.heights:
+            return 0.0
+        climb_m2, self._unseen_up_m2 = self._unseen_up_m2, 0.0
+        return climb_m2
+
+    def _stand(self, reading: Displacement, still: bool) -> tuple[Turn | None, bool]:
+        """Go on standing, or stop.
+
+        Returns:
+            The gyro bias that this tells, and whether its bearer sets off after it has been told.
+        """
+        before, stood, told = self._still, None, None
+        if still and reading.heading_rad is not None:
+            stood, told = stand_on(before, reading.t, reading.heading_rad)
+        elif still:
+            stood = before
+        elif before is not None:
+            told = before.bias()
+        self._still = stood
+        sets_off = not still and before is not None and (before.told or told is not None)
+        if before is None or told is None:
+            return None, sets_off
+        return Turn(before.t, *told, SET_OFF[4] if sets_off else 0.0), sets_off
+
+    def after(self) -> NodeState:
+        """The unit after the step."""
+        node, marks, t = self.node, self._marks, self._pose_t
+        if not self.taken:
+            return node
+        oldest, last = 0, len(marks) - 1
+        while oldest < last and marks[oldest][0] < t - TRAIL_S:
+            oldest += 1
+        return replace(
+            node,
+            t=max(node.t, t),
+            pose_t=t,
+            unit_t=t,
+            unit_heading_rad=self._heading_rad,
+            speed_mps=self._speed_mps,
+            trail=tuple(marks[max(oldest - 1, 0) :]),
+            still=self._still,
+            way_m=self._way_m,
+            level=self._level,
+            unseen_up_m2=self._unseen_up_m2,
+        )
+
+
+def walk_noise(known: Vector3, reading: Displacement, length: float, duration: float) -> Noise:
+    """Variances of a displacement.
+
+    Args:
+        known: what else its place is unsure by: of east, north, up (m²).
+        reading: the displacement; one that samples have made knows its own noise.
+        length: of what counts of it (m).
+        duration: the same (s).
+    """
+    e, n, u = known
+    step = WALK_M2_PER_M * length if reading.sigma_m is None else reading.sigma_m**2
+    position = step + STAND_M2_PER_S * duration + FLOOR_M2
+    if isinstance(reading, Led):
+        heading, bias = reading.turned_rad2, WARMING_PER_S * duration + reading.bias_rad2ps2
+    else:
+        heading, bias = TURN_RAD2_PER_M * length + TURN_RAD2_PER_S * duration, BIAS_PER_S * duration
+    return e + position, n + position, u + position, heading, bias, SCALE_PER_S * duration
+
+
+def start_of(reading: Displacement, pose_t: float | None) -> float:
+    """Epoch at which a displacement begins; `pose_t`: where it does not tell; None: nothing was before."""
+    if reading.from_t is not None:
+        return reading.from_t
+    return reading.t - FIRST_DURATION_S if pose_t is None else pose_t
+
+
+def sum_of(one: Noise, other: Noise) -> Noise:
+    """The variances of two displacements, one after the other."""
+    e, n, u, psi, beta, scale = one
+    more_e, more_n, more_u, more_psi, more_beta, more_scale = other
+    return e + more_e, n + more_n, u + more_u, psi + more_psi, beta + more_beta, scale + more_scale

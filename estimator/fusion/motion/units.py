@@ -1,0 +1,79 @@
+"""How nodes with a PDR unit move between ticks: by its displacements, or unseen in a silence."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from msgspec.structs import replace
+from numba import njit
+
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.silence import SILENT_S, unheard_m2
+from estimator.fusion.motion.steps import Step, sum_of
+from estimator.graph.dense import Array, Indices
+from estimator.measurements.displacement import move
+
+FLOOR = (1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12)
+
+
+def advance_units(state: FusionState, steps: Sequence[Step]) -> None:
+    """One transition for all units that have moved in a tick, by what their displacements add up to."""
+    starts = state.graph.starts
+    told = [
+        (starts[s.node.position], starts[s.node.unit], *s.delta_m, s.duration_s, *sum_of(s.noise, FLOOR))
+        for s in steps
+    ]
+    state.graph.advance(*walked(np.array(told), state.graph.reference))
+
+
+@njit(cache=True)
+def walked(steps: Array, x: Array) -> tuple[Indices, Array, Array, Array]:
+    """What steps make of the blocks of their units, as `Kirchhoff.advance` takes it.
+
+    Args:
+        steps: where each unit's position and its errors start; displacement in its frame (m), time (s), and
+            the variances of its six numbers, g × 12.
+        x: the reference of the graph, n.
+    """
+    g = len(steps)
+    rows, states, noise = np.empty((g, 6), dtype=np.intp), np.empty((g, 6)), np.zeros((g, 6, 6))
+    for i in range(g):
+        for c in range(6):
+            rows[i, c] = int(steps[i, c // 3]) + c % 3
+            states[i, c], noise[i, c, c] = x[rows[i, c]], steps[i, 6 + c]
+    moved = move(states, steps[:, 2:5], steps[:, 5])
+    return rows, moved.state, moved.transition, noise
+
+
+def was_silent(node: NodeState) -> bool:
+    """Whether a unit has reported nothing for some time up to where its node is now."""
+    return node.unit_t is None or node.pose_t > node.unit_t + SILENT_S
+
+
+def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
+    """Units have not reported up to an epoch at which something else is to be held against their position.
+
+    Their bearers may have stood or walked (`silence.unheard_m2`). A displacement that comes later counts for
+    the part of its time that is left.
+
+    Args:
+        state: the fusion.
+        until: the epoch, by unit.
+    """
+    nodes = [state.nodes[name] for name in until]
+    noise = np.zeros((len(nodes), 3, 3))
+    for i, (node, t) in enumerate(zip(nodes, until.values(), strict=True)):
+        since_s = math.inf if node.unit_t is None else node.pose_t - node.unit_t
+        if since_s < SILENT_S <= since_s + t - node.pose_t:
+            # From now on ranges alone tell where he goes.
+            state.suspected = True
+        wander = unheard_m2(t - node.pose_t, since_s)
+        across, up = wander, 0.1 * wander
+        noise[i, 0, 0], noise[i, 1, 1], noise[i, 2, 2] = across, across, up
+        step = (0.0, 0.0, 0.0, across, up, 0.0, 0.0, 0.0, 1.0)
+        state.ledger.add("steps", t, node.index, node.pose_t, *step)
+        state.nodes[node.node] = replace(node, pose_t=t, trail=())
+    rows = np.array([state.graph.starts[node.position] for node in nodes])[:, None] + np.arange(3)
+    still = np.zeros((len(nodes), 3, 3)) + np.eye(3)
+    state.graph.advance(rows, state.graph.reference[rows], still, noise)

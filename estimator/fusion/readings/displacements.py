@@ -1,0 +1,109 @@
+"""Displacements of PDR units as they are taken in, all those of a tick together."""
+
+import math
+from collections.abc import Sequence
+
+from estimator.fusion import physics
+from estimator.fusion.entering.introduce import attach_unit, begin_at_base, waits_for_ranges
+from estimator.fusion.memory.ledger import GYRO_BIAS
+from estimator.fusion.memory.state import Count, FusionState
+from estimator.fusion.motion.steps import Step, start_of
+from estimator.fusion.motion.units import advance_units
+from estimator.fusion.physics import NOISES
+from estimator.fusion.rows.rows import Single
+from estimator.inertial.navigation import Led
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.node import MOVING_ROLES
+
+
+def move_units(state: FusionState, readings: Sequence[Displacement], turns: list[Single]) -> None:
+    """Fold a tick's displacements: one transition for all units at once, and ZARU where they stand still.
+
+    Args:
+        state: the fusion.
+        readings: in order of epoch.
+        turns: takes the gyro biases that standing units tell.
+    """
+    steps: dict[str, Step] = {}
+    for reading in readings:
+        step = steps.get(reading.node) or _begin(state, reading)
+        if step is None:
+            _count(state, reading, "not_fused")
+            continue
+        steps[reading.node] = step
+        if _extend(state, step, reading, turns):
+            _count(state, reading, "fused")
+    moving = [step for step in steps.values() if step.taken]
+    if moving:
+        advance_units(state, moving)
+    for name, step in steps.items():
+        state.nodes[name] = step.after()
+
+
+def _begin(state: FusionState, reading: Displacement) -> Step | None:
+    """The step that a unit's first displacement in a tick begins; None where its node is not to move."""
+    node = state.node_of(reading.node, "responder", reading.t)
+    if node.role not in MOVING_ROLES or node.mode == "retired":
+        text = f"{node.node} is a {node.mode} {node.role}: its displacement is set aside"
+        state.say("conflict", reading.t, node.node, text, once=f"displacement of {node.node}")
+        return None
+    if node.mode == "undecided":
+        if waits_for_ranges(state, node, reading.t):
+            text = f"nobody said where {node.node} entered: its displacements wait for ranges that tell"
+            state.say("not_fused", reading.t, node.node, text, once=f"{node.node} waits for ranges")
+            return None
+        begin_at_base(state, node, start_of(reading, None))
+    if state.nodes[node.node].mode == "free":
+        attach_unit(state, state.nodes[node.node], reading.heading_rad)
+    return Step(state.nodes[node.node])
+
+
+def _count(state: FusionState, reading: Displacement, what: Count) -> None:
+    """Count a displacement, unless samples have made it, which are counted."""
+    if not isinstance(reading, Led):
+        state.count(what)
+
+
+def returns(state: FusionState, readings: Sequence[Displacement]) -> dict[str, float]:
+    """Units that report again after a silence of which they tell nothing, and since when they do (s).
+
+    Args:
+        state: the fusion.
+        readings: a tick's displacements, in order of epoch.
+    """
+    told_until = {node.node: node.pose_t for node in state.nodes.values() if node.mode == "unit"}
+    back: dict[str, float] = {}
+    for reading in readings:
+        until_t = told_until.get(reading.node, math.inf)
+        start_t = start_of(reading, until_t)
+        if start_t > until_t + physics.FREE_TICK_S:
+            back.setdefault(reading.node, start_t)
+        told_until[reading.node] = max(until_t, reading.t)
+    return back
+
+
+def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[Single]) -> bool:
+    node, increment = step.node, step.take(reading)
+    if increment is None:
+        text = f"{node.node} reported this epoch's displacement before"
+        state.say("conflict", reading.t, node.node, text, once=f"epochs of {node.node}")
+        _count(state, reading, "not_fused")
+        return False
+    if increment.too_fast:
+        length = math.hypot(*increment.delta_m)
+        text = f"{node.node} reported {length:.1f} m at once, faster than anyone runs"
+        state.say("outlier", reading.t, node.node, text)
+        state.count("outlier")
+    if increment.turn is not None:
+        told, noise = increment.turn, physics.TURN_NOISE
+        state.ledger.add(
+            "singles", told.t, node.index, GYRO_BIAS, told.value, told.sigma, float(NOISES.index(noise))
+        )
+        # The tick moves on first, then takes in what was told before.
+        sigma = math.sqrt(told.sigma**2 + told.since)
+        turns.append(Single(node.unit, 1, told.value, sigma, noise))
+    given = float(reading.sigma_m is not None)
+    across, _, up, turn, bias, scale = increment.noise
+    variances = (across, up, turn, bias, scale, given)
+    state.ledger.add("steps", reading.t, node.index, increment.since_t, *increment.delta_m, *variances)
+    return True

@@ -1,0 +1,112 @@
+"""Fixes and heights as they are held against the graph."""
+
+import numpy as np
+from msgspec.structs import replace
+
+from estimator.fusion import physics
+from estimator.fusion.entering.introduce import place
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.swings import unbend
+from estimator.fusion.motion.way import offset_of, turned_m
+from estimator.fusion.rows.rows import Single
+from estimator.graph.robust import Mixture
+from estimator.measurements.altitude import Altitude, Pressure, height_above
+from estimator.measurements.position import Position, east_north_up
+
+
+def fix(state: FusionState, reading: Position) -> list[Single]:
+    """What an absolute fix says; the first one of a node decides where it begins."""
+    position = reading.position_m
+    if position is None and reading.wgs84 is not None:
+        if state.origin_wgs84 is None:
+            text = "a WGS84 fix cannot be fused: the incident has no origin in WGS84"
+            state.say("no_origin", reading.t, reading.node, text, once=f"no origin for {reading.node}")
+            state.count("not_fused")
+            return []
+        position = east_north_up(reading.wgs84, state.origin_wgs84)
+    node = state.node_of(reading.node, "responder", reading.t)
+    if position is None or not _takes(state, node, reading.t, "fix"):
+        return []
+    sigma = reading.sigma_m or physics.FIX_SIGMA_M
+    if node.mode == "undecided":
+        place(state, node, reading.t, position, sigma)
+        state.count("fused")
+        return []
+    state.count("fused")
+    singles, offset = [], offset_of(state, node, reading.t)
+    _tell_heights(state, node.node)
+    if node.turned:
+        # A fix on the arc would seem to be far off its tangent.
+        unbend(state, node)
+    for i in range(3):
+        spread = max(sigma[i], physics.SIGMA_FLOOR_M)
+        _enter_single(state, node, reading.t, i, position[i], spread, physics.FIX_NOISE)
+        if node.turned and i < 2:
+            spread = float(np.hypot(spread, turned_m(offset)))
+        singles.append(Single(node.position, i, position[i] - offset[i], spread, physics.FIX_NOISE))
+    return singles
+
+
+def height(state: FusionState, reading: Altitude | Pressure) -> list[Single]:
+    """What a height says, or of an air pressure over the base's own."""
+    node = state.nodes.get(reading.node)
+    if isinstance(reading, Pressure) and node is not None and node.role == "base":
+        state.reference_pa = reading.pressure_pa
+        state.count("fused")
+        return []
+    node = state.node_of(reading.node, "responder", reading.t)
+    if not _takes(state, node, reading.t, "height"):
+        return []
+    if node.mode == "undecided":
+        state.count("not_fused")
+        return []
+    up, sigma = _height(state, node, reading)
+    if up is None:
+        text = f"the pressure of {node.node} waits for one of the base: there is no reference"
+        state.say("not_fused", reading.t, node.node, text, once="no reference pressure")
+        state.count("not_fused")
+        return []
+    if isinstance(reading, Pressure):
+        state.nodes[node.node] = replace(node, pressure_t=reading.t)
+    state.count("fused")
+    sigma, noise = max(sigma, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE
+    _tell_heights(state, node.node)
+    _enter_single(state, node, reading.t, 2, up, sigma, noise)
+    up -= offset_of(state, node, reading.t)[2]
+    return [Single(node.position, 2, up, sigma, noise)]
+
+
+def _tell_heights(state: FusionState, name: str) -> None:
+    if not state.nodes[name].heights:
+        state.nodes[name] = replace(state.nodes[name], heights=True)
+
+
+def _enter_single(
+    state: FusionState, node: NodeState, t: float, axis: int, value: float, sigma: float, noise: Mixture
+) -> None:
+    state.ledger.add("singles", t, node.index, axis, value, sigma, physics.NOISES.index(noise))
+
+
+def _height(state: FusionState, node: NodeState, reading: Altitude | Pressure) -> tuple[float | None, float]:
+    if isinstance(reading, Altitude):
+        return reading.up_m, reading.sigma_m or physics.ALTITUDE_SIGMA_M
+    if state.reference_pa is None:
+        return None, 0.0
+    above = height_above(state.reference_pa, reading.pressure_pa)
+    sigma = np.hypot(reading.sigma_m or physics.PRESSURE_SIGMA_M, physics.LAYER_SIGMA * above)
+    if node.pressure_t is not None:
+        # Pressures soon after each other share their error: together they may weigh as one per correlation
+        # time.
+        since = np.clip(reading.t - node.pressure_t, 0.01, physics.PRESSURE_CORRELATION_S)
+        sigma *= np.sqrt(physics.PRESSURE_CORRELATION_S / since)
+    return state.base_place()[2] + above, float(sigma)
+
+
+def _takes(state: FusionState, node: NodeState, t: float, what: str) -> bool:
+    if node.mode in ("fixed", "retired"):
+        text = f"{node.node} is {node.mode}: its {what} is set aside"
+        state.say("conflict", t, node.node, text, once=f"{what} of {node.mode} {node.node}")
+        state.count("not_fused")
+        return False
+    return True

@@ -1,0 +1,190 @@
+"""Readings between two nodes as they are held against the graph, all those of a tick together."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from estimator.fusion import physics
+from estimator.fusion.entering.technologies import (
+    TOLD_POWER,
+    UNTOLD_POWER,
+    path_loss_states,
+    technology_states,
+)
+from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.way import End, Mark, end_of, table_of_marks
+from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
+from estimator.fusion.rows.rows import FIELDS, table_from
+from estimator.graph.dense import Array
+from estimator.measurements.bearing import Bearing
+from estimator.measurements.node import MOVING_ROLES
+from estimator.measurements.range import Range
+from estimator.measurements.rssi import Rssi
+
+AnyPair = Range | Rssi | Bearing
+
+
+class Named(NamedTuple):
+    """A node that a reading names.
+
+    Attributes:
+        node: the node.
+        number: its row among the ends of the tick's readings.
+        decided: readings can be held against its position.
+        fixed: its position is known exactly.
+    """
+
+    node: NodeState
+    number: int
+    decided: bool
+    fixed: bool
+
+
+class Pairs:
+    """The readings between two nodes of a tick; what is the same for many of them is looked up once.
+
+    Nothing else may change the nodes' places or the learned noise meanwhile.
+
+    Attributes:
+        fused_t: epoch of the newest reading that is held against each node's place (s).
+    """
+
+    def __init__(self, state: FusionState) -> None:
+        self._state = state
+        self._told: list[float] = []
+        self._named: dict[str, Named] = {}
+        self._ends: list[End] = []
+        self._marks: list[Mark] = []
+        self._technologies: list[Technology] = []
+        self._held: dict[str, int] = {}
+        self._sighted: dict[str, int] = {}
+        self.fused_t: dict[str, float] = {}
+
+    def take(self, readings: Sequence[AnyPair]) -> None:
+        """Take readings in, in order of epoch."""
+        state, named, told = self._state, self._named, self._told
+        link_of, held, fused, fused_t = state.links.number, self._held, 0, self.fused_t
+        for reading in readings:
+            t, name_a, name_b = reading.t, reading.a, reading.b
+            a = named.get(name_a) or self._name(name_a, t)
+            b = named.get(name_b) or self._name(name_b, t)
+            between = a.decided and b.decided
+            if not between and not self._sights(a.node, b.node, reading):
+                continue
+            if between and a.fixed and b.fixed:
+                state.count("not_fused")
+                continue
+            numbers, constant = held if between else self._sighted, 0.0
+            if isinstance(reading, Rssi):
+                kind, source, value, sigma = RSSI, UNTOLD_POWER, reading.dbm, physics.RSSI_SIGMA_DB
+                if reading.tx_dbm is not None:
+                    source, constant = TOLD_POWER, reading.tx_dbm
+            elif isinstance(reading, Range):
+                kind, source, value = RANGE, reading.technology or "unnamed", reading.range_m
+                usual = physics.RANGE_SIGMA_M.get(source, physics.RANGE_SIGMA_OTHER_M)
+                sigma = max(reading.sigma_m or usual, physics.SIGMA_FLOOR_M)
+            else:
+                if self._bear(a, b, reading):
+                    fused += 1
+                    fused_t[name_a] = fused_t[name_b] = t
+                continue
+            if kind == RANGE and "unit" in (a.node.mode, b.node.mode):
+                state.uncalibrated.setdefault(source, physics.UNCALIBRATED)
+            technology = numbers.get(source)
+            if technology is None:
+                technology = self._technology(kind, source, between)
+            link = link_of(source, name_a, name_b)
+            told += (t, value, sigma, constant, technology, link, a.number, b.number)
+            if between:
+                fused += 1
+                fused_t[name_a] = fused_t[name_b] = t
+        state.count("fused", fused)
+
+    def enter(self) -> Array:
+        """Enter what was taken into the ledger.
+
+        Returns:
+            Rows of the readings between decided nodes, m × `FIELDS`; see `rows.Row`.
+        """
+        if not self._told:
+            return np.empty((0, FIELDS))
+        state = self._state
+        made = pair_rows(
+            np.array(self._told).reshape(-1, PAIR),
+            table_from(self._technologies),
+            table_from(self._ends),
+            table_of_marks(self._marks),
+            state.links.table,
+            state.graph.reference,
+        )
+        state.ledger.extend("pairs", made.entered)
+        return made.table
+
+    def _name(self, name: str, t: float) -> Named:
+        node = self._state.node_of(name, "breadcrumb", t)
+        end = end_of(self._state, node, self._marks)
+        found = self._named[name] = Named(node, len(self._ends), end.decided, node.mode == "fixed")
+        self._ends.append(end)
+        return found
+
+    def _sights(self, a: NodeState, b: NodeState, reading: AnyPair) -> bool:
+        """Whether a reading tells where an undecided node is; if so, it is counted for it."""
+        state = self._state
+        if "retired" in (a.mode, b.mode):
+            node, other = (a, b) if a.mode == "retired" else (b, a)
+            text = f"{node.node} is retired: what {other.node} measures to it is set aside"
+            state.say("conflict", reading.t, node.node, text, once=f"pair with retired {node.node}")
+            state.count("not_fused")
+            return False
+        undecided, other = (b, a) if a.decided else (a, b)
+        moving = other.moving and undecided.role in MOVING_ROLES
+        if not other.decided or isinstance(reading, Bearing) or moving:
+            state.count("not_fused")
+            return False
+        state.sightings[undecided.node] = state.sightings.get(undecided.node, 0) + 1
+        return True
+
+    def _technology(self, kind: int, source: str, between: bool) -> int:
+        state, start = self._state, -1
+        learned, usual = state.learned(source), physics.NOISES[kind]
+        if between:
+            states = technology_states(state, source) if kind == RANGE else path_loss_states(state, source)
+            start = state.graph.starts[states]
+        known = Technology(
+            kind,
+            state.source(source),
+            start,
+            learned.factor,
+            learned.shared,
+            learned.outliers(usual.outliers),
+            usual.shift,
+            usual.spread,
+        )
+        numbers = self._held if between else self._sighted
+        numbers[source] = len(self._technologies)
+        self._technologies.append(known)
+        return numbers[source]
+
+    def _bear(self, a: Named, b: Named, reading: Bearing) -> bool:
+        """Take a bearing between decided nodes in, unless nobody knows what it is counted from."""
+        state, kind, heading = self._state, BEARING, 0.0
+        if reading.frame == "body":
+            node = a.node
+            known = node.unit_heading_rad if node.mode == "unit" else node.heading_rad
+            if known is None or node.mode == "free":
+                text = f"{node.node} has no heading: its bearings in the body frame are set aside"
+                state.say("not_fused", reading.t, node.node, text, once=f"bearing from {node.node}")
+                state.count("not_fused")
+                return False
+            kind, heading = BODY_BEARING, known
+        sigma = max(reading.sigma_rad or physics.BEARING_SIGMA_RAD, physics.HEADING_FLOOR_RAD)
+        technology = self._held.setdefault(f"bearing {reading.frame}", len(self._technologies))
+        if technology == len(self._technologies):
+            known_of = Technology(kind, state.source(""), -1, 1.0, 0.0, *physics.BEARING_NOISE)
+            self._technologies.append(known_of)
+        told = (reading.t, reading.bearing_rad, sigma, heading)
+        self._told += (*told, technology, -1, a.number, b.number)
+        return True

@@ -1,0 +1,182 @@
+"""Readings of one tick as a table of numbers: what each is held against, and its linearisation, compiled."""
+
+from collections.abc import Mapping, Sequence
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from estimator.fusion.memory.ledger import BEARING, RANGE, RSSI
+from estimator.graph.dense import Array, Indices
+from estimator.graph.robust import Mixture
+from estimator.graph.variable import Variable
+from estimator.measurements.bearing import predict_bearing, wrap
+from estimator.measurements.range import predict_range
+from estimator.measurements.rssi import predict_rssi
+
+ONE = -1
+"""Kind of a reading of one number; the others have the kinds of pairs in the ledger."""
+WIDTH = 8
+"""Numbers that a reading depends on at most: two positions, and two states of a technology."""
+
+
+class Single(NamedTuple):
+    """A reading of one number of one block: an axis of a position, a bias.
+
+    Attributes:
+        variable: the block.
+        axis: which of its numbers.
+        value: what was read.
+        sigma: its standard deviation.
+        noise: its outliers.
+    """
+
+    variable: Variable
+    axis: int
+    value: float
+    sigma: float
+    noise: Mixture
+
+
+class Row(NamedTuple):
+    """A reading of one number of one block (an axis of a position, a bias), or one between two nodes.
+
+    Attributes:
+        kind: `ONE`, `RANGE`, `RSSI` or `BEARING`.
+        a: row of the number that is read; else where the block of the end that measured starts. −1: it is
+            fixed, at `a_e`, `a_n`, `a_u`.
+        value: what was read.
+        sigma: its standard deviation.
+        outliers: see `Mixture`.
+        shift: see `Mixture`.
+        spread: see `Mixture`.
+        nominal: claimed or assumed standard deviation.
+        b: as `a`, of the other end.
+        extra: where the technology's states start, or those of the unit that a bearing is counted from. −1:
+            none.
+        constant: what is added to the first of them: reported heading (rad), sent power (dBm).
+        source: number of the technology that its noise is learned for; −1: none.
+        link: row of its link, see `links`; −1: none.
+        a_e: where the end that measured stood at the reading's epoch, east of its block (m).
+        a_n: the same, north.
+        a_u: the same, up.
+        b_e: where the other end stood.
+        b_n: the same, north.
+        b_u: the same, up.
+    """
+
+    kind: int
+    a: int
+    value: float
+    sigma: float
+    outliers: float
+    shift: float
+    spread: float
+    nominal: float
+    b: int = -1
+    extra: int = -1
+    constant: float = 0.0
+    source: int = -1
+    link: int = -1
+    a_e: float = 0.0
+    a_n: float = 0.0
+    a_u: float = 0.0
+    b_e: float = 0.0
+    b_n: float = 0.0
+    b_u: float = 0.0
+
+
+FIELDS = len(Row._fields)
+KIND, A, VALUE, SIGMA, OUTLIERS, SHIFT, SPREAD, NOMINAL, B, EXTRA, CONSTANT, SOURCE, LINK, A_E = range(14)
+B_E = A_E + 3
+
+
+def table_of(starts: Mapping[Variable, int], singles: Sequence[Single], pairs: Array) -> Array:
+    """Readings as a table, m × `FIELDS`, those of one kind one after the other.
+
+    Args:
+        starts: first row of each block; the table is valid until one is deleted.
+        singles: readings of one number.
+        pairs: rows of readings between two nodes, those of one kind one after the other.
+    """
+    if not singles:
+        return pairs
+    rows = [Row(ONE, starts[s.variable] + s.axis, s.value, s.sigma, *s.noise, s.sigma) for s in singles]
+    return np.concatenate([table_from(rows), pairs])
+
+
+def table_from(rows: Sequence[Sequence[float]]) -> Array:
+    """Rows of numbers, at least one, as a table."""
+    width = len(rows[0])
+    return np.fromiter(chain.from_iterable(rows), np.float64, len(rows) * width).reshape(-1, width)
+
+
+@njit(cache=True, error_model="numpy")
+def columns_of(table: Array) -> Indices:
+    """Which numbers each reading depends on, m × 8: of a, b and extra; −1 where there is none."""
+    m = len(table)
+    columns = np.full((m, WIDTH), -1)
+    for r in range(m):
+        if table[r, KIND] == ONE:
+            columns[r, 0] = int(table[r, A])
+            continue
+        for at, field, length in ((0, A, 3), (3, B, 3), (6, EXTRA, 2)):
+            start = int(table[r, field])
+            if start >= 0:
+                for i in range(length):
+                    columns[r, at + i] = start + i
+    return columns
+
+
+@njit(cache=True, error_model="numpy")
+def linearise(table: Array, columns: Indices, x: Array, jacobian: Array, residual: Array) -> None:
+    """Residuals and derivatives at an estimate.
+
+    Args:
+        table: of m readings.
+        columns: which numbers each depends on, m × 8.
+        x: the estimate, n.
+        jacobian: takes the derivatives, m × 8; 0 where there is no number.
+        residual: takes z − h(x), m.
+    """
+    m = len(table)
+    a, b, states = np.empty((m, 3)), np.empty((m, 3)), np.zeros((2, m))
+    for r in range(m):
+        for i in range(3):
+            a[r, i], b[r, i] = table[r, A_E + i], table[r, B_E + i]
+            if columns[r, i] >= 0:
+                a[r, i] += x[columns[r, i]]
+            if columns[r, 3 + i] >= 0:
+                b[r, i] += x[columns[r, 3 + i]]
+        states[0, r] = table[r, CONSTANT]
+        if columns[r, 6] >= 0:
+            states[0, r] += x[columns[r, 6]]
+            states[1, r] = x[columns[r, 7]]
+    first = 0
+    while first < m:
+        kind, last = table[first, KIND], first + 1
+        while last < m and table[last, KIND] == kind:
+            last += 1
+        own, others, one, two = a[first:last], b[first:last], states[0, first:last], states[1, first:last]
+        if kind == ONE:
+            jacobian[first:last] = 0.0
+            jacobian[first:last, 0] = 1.0
+            residual[first:last] = table[first:last, VALUE] - own[:, 0]
+        else:
+            if kind == RANGE:
+                got = predict_range(own, others, one, two)
+            elif kind == RSSI:
+                got = predict_rssi(table[first:last, VALUE], own, others, one, two)
+            else:
+                got = predict_bearing(own, others, one)
+            off = table[first:last, VALUE] - got.predicted
+            residual[first:last] = wrap(off) if kind == BEARING else off
+            jacobian[first:last, :3] = got.by_a
+            jacobian[first:last, 3:6] = got.by_b
+            jacobian[first:last, 6:] = got.by_extra
+            for r in range(first, last):
+                for i in range(WIDTH):
+                    if columns[r, i] < 0:
+                        jacobian[r, i] = 0.0
+        first = last
