@@ -13,6 +13,7 @@ from estimator.fusion.images import Image
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
 from estimator.smoothing.images.along import Costed, company, costed
+from estimator.smoothing.images.among import among
 from estimator.smoothing.images.asked import WAYS, asked_again, asked_of
 from estimator.smoothing.images.earlier import LEAST, earlier
 from estimator.smoothing.images.flips import (
@@ -68,6 +69,7 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
         effort: how much is asked.
     """
     problem, solved, before = earlier(problem, solved)
+    solved, apart = among(problem, solved, effort.whole)
     again = asked_again(problem)
     # Where nobody was known before, hardly anything tells yet.
     new = any(_is_new(problem.layout, i) for i in range(len(problem.layout.walks)))
@@ -98,6 +100,9 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
         # Where it was not asked of all who may face anything, it is asked again soon anyway.
         if not changed or len(asked) < len(led) - len(again):
             break
+    for mode in apart:
+        if not any(same_now(problem.layout, mode.x, x) for x in (solved.x, *(m.x for m in (*before, *told)))):
+            told.append(mode)
     problem.rows.widen(solved.x, solved.linear.jacobian)
     open_now = new or bool(before) or any(open_to.values())
     return Judged(problem, solved, [*before, *told], open_now, frozenset(open_to))
