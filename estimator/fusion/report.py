@@ -6,16 +6,34 @@ from numba import njit
 from estimator.estimate import NodeEstimate, Relative
 from estimator.fusion.entering.introduce import tuple_of, upper_triangle
 from estimator.fusion.images import doubt_between_m2, doubt_m2
+from estimator.fusion.learned.calibration import doubt
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.swings import loose_headings, swung_m2
 from estimator.graph.dense import Array, Indices
+from estimator.graph.variable import Variable
 from estimator.measurements.bearing import within_pi
 
 PLANE = [3, 4, 6]
 """Where what `shown` tells has the variances and the covariance of east and north."""
+NOTHING = 1e-3
+"""What a doubt adds to the variance of a scale, as a share of it, that is not seen in any place."""
 MOVING_MPS = 0.3
 """Below it a velocity tells no heading."""
+
+
+def covariance_of(state: FusionState) -> Array:
+    """Σ of the graph, n × n, which holds also that a ranging technology may be of the other kind."""
+    graph = state.graph
+    found = graph.covariance()
+    for name, known in state.calibrations.items():
+        row = graph.starts.get(Variable("range", name))
+        if row is not None:
+            variance = float(found[row, row])
+            factor = doubt(known, float(graph.reference[row]), variance)
+            if factor * variance > NOTHING:
+                found += factor * np.outer(found[:, row], found[:, row])
+    return found
 
 
 def estimates(state: FusionState, covariance: Array) -> list[NodeEstimate]:
@@ -23,7 +41,7 @@ def estimates(state: FusionState, covariance: Array) -> list[NodeEstimate]:
 
     Args:
         state: the fusion.
-        covariance: Σ of its graph, n × n.
+        covariance: see `covariance_of`, n × n.
     """
     graph = state.graph
     held = [node for node in state.nodes.values() if node.place_m is None and node.decided]

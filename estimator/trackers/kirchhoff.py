@@ -21,7 +21,7 @@ from estimator.trackers.base import TrackerSettings
 from estimator.trackers.lag import Lag, LagRecord
 from estimator.trackers.snapshot import read_snapshot
 
-VERSION = 17
+VERSION = 18
 
 
 class _Snapshot(msgspec.Struct, frozen=True, array_like=True):
@@ -54,7 +54,7 @@ class KirchhoffTracker:
             if state.waiting:
                 state = state.copy()
                 flush(state)
-            self._shown = state, state.graph.covariance()
+            self._shown = state, report.covariance_of(state)
         return self._shown
 
     def estimates(self) -> list[NodeEstimate]:

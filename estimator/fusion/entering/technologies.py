@@ -1,7 +1,7 @@
 """The blocks of technologies in the Kirchhoff matrix: scale and bias of ranges, path loss of powers."""
 
 from estimator.fusion import physics
-from estimator.fusion.learned.calibration import bias_sigma_m, scale_sigma
+from estimator.fusion.learned.calibration import bias_sigma_m
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.variable import Variable
 
@@ -16,8 +16,9 @@ def technology_states(state: FusionState, technology: str) -> Variable:
     """The block of scale and bias of a ranging technology, added when first used."""
     states = Variable("range", technology)
     if states not in state.graph:
-        scale = scale_sigma(state.uncalibrated.get(technology, 0.0), state.narrow_sigma(technology))
-        state.graph.add_node(states, (0.0, 0.0), (scale, bias_sigma_m(technology)))
+        state.graph.add_node(
+            states, (0.0, 0.0), (state.range_scale_sigma(technology), bias_sigma_m(technology))
+        )
     return states
 
 

@@ -6,6 +6,8 @@ both kinds: p ∝ share · N(d; 0, v + σ²). The next solution has the prior of
 
 import math
 
+import msgspec
+
 from estimator.fusion import physics
 
 NOTHING = 1e-6
@@ -16,6 +18,20 @@ Told = tuple[float, float]
 TRUSTED = 0.25
 """Probability of not being calibrated below which a technology is taken for calibrated. One that is wrongly
 trusted bends everything; one that is wrongly distrusted costs some sharpness."""
+
+
+class Calibration(msgspec.Struct, frozen=True, array_like=True):
+    """What is thought of a ranging technology's scale.
+
+    Attributes:
+        uncalibrated: probability that it is of the wide kind.
+        narrow: standard deviation of its prior if it is calibrated, when that was judged last.
+        assumed: that of the prior that the scale was estimated with; nil: none was yet.
+    """
+
+    uncalibrated: float = physics.UNCALIBRATED
+    narrow: float = physics.RANGE_SCALE_SIGMA
+    assumed: float = 0.0
 
 
 def told_of(sigma: float, estimate: float, variance: float) -> Told:
@@ -80,6 +96,31 @@ def uncalibrated(sigma: float, estimate: float, variance: float, narrow: float) 
     odds -= _logarithm(said, alone + narrow**2)
     odds += math.log(physics.UNCALIBRATED / (1.0 - physics.UNCALIBRATED))
     return 1.0 / (1.0 + math.exp(min(max(-odds, -700.0), 700.0)))
+
+
+def doubt(known: Calibration, estimate: float, variance: float) -> float:
+    """What it adds to covariances that a technology may be of the other kind than is assumed.
+
+    All places move with the scale, by Σ_xs / v. With the prior of the other kind it would be elsewhere, and
+    less well known or better: the second moment about where it is shown holds both, as likely as they are.
+
+    Args:
+        known: what is thought of the scale.
+        estimate: of the scale error.
+        variance: v of it, the prior included.
+
+    Returns:
+        f of f Σ_xs Σ_sx, which is to be added to Σ.
+    """
+    if not known.assumed > 0.0:
+        return 0.0
+    wide = known.assumed >= physics.RANGE_SCALE_WIDE
+    share, sigma = (
+        (1.0 - known.uncalibrated, known.narrow) if wide else (known.uncalibrated, physics.RANGE_SCALE_WIDE)
+    )
+    information, product = told_of(known.assumed, estimate, variance)
+    other = 1.0 / (information + sigma**-2)
+    return share * ((other * product - estimate) ** 2 + max(other - variance, 0.0)) / variance**2
 
 
 def _logarithm(value: float, variance: float) -> float:

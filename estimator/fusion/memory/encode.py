@@ -2,6 +2,7 @@
 
 import msgspec
 
+from estimator.fusion.learned.calibration import Calibration
 from estimator.fusion.learned.links import Links
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.memory.ledger import COLUMNS
@@ -50,7 +51,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     refreshed_t: float
     window_t: float | None
     prior: PriorRecord | None
-    uncalibrated: dict[str, float]
+    calibrations: dict[str, Calibration]
     bent_m: float
     navigations: dict[str, NavigationRecord]
 
@@ -89,7 +90,7 @@ def record_of(state: FusionState) -> FusionRecord:
             (pack(prior.matrix), pack(prior.vector), pack(prior.reference)),
             dict(prior.epochs),
         ),
-        dict(state.uncalibrated),
+        dict(state.calibrations),
         state.bent_m,
         {name: navigation_record_of(known) for name, known in state.navigations.items()},
     )
@@ -112,7 +113,7 @@ def state_of(record: FusionRecord) -> FusionState:
     state.newest_t, state.due, state.begun_t = record.newest_t, record.due, record.begun_t
     state.suspected, state.exposed = record.suspected, record.exposed
     state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
-    state.uncalibrated, state.bent_m = record.uncalibrated, record.bent_m
+    state.calibrations, state.bent_m = record.calibrations, record.bent_m
     state.navigations = {name: navigation_of(known) for name, known in record.navigations.items()}
     if record.prior is not None:
         matrix, vector, reference = (unpack(a) for a in record.prior.arrays)

@@ -7,7 +7,7 @@ import numpy as np
 
 from estimator.estimate import Notice, NoticeCode, Vector3
 from estimator.fusion import physics
-from estimator.fusion.learned.calibration import narrow_sigma
+from estimator.fusion.learned.calibration import Calibration, narrow_sigma, scale_sigma
 from estimator.fusion.learned.gyros import bias_sigma_radps
 from estimator.fusion.learned.links import Links
 from estimator.fusion.learned.noise import LearnedNoise
@@ -51,7 +51,7 @@ class FusionState:
         window_t: epoch of the window's first keyframe.
         prior: what is known from before the window.
         navigations: of the boots whose units report raw samples, by node.
-        uncalibrated: probability that a ranging technology is not calibrated, where it reaches odometry.
+        calibrations: what is thought of the scale of each ranging technology that reaches odometry.
         ledger: what has been fused, as tables.
         owners: the node of each number in the ledger.
         sources: the technologies of the ledger's readings.
@@ -80,7 +80,7 @@ class FusionState:
         self.window_t: float | None = None
         self.prior: Prior | None = None
         self.navigations: dict[str, Navigation] = {}
-        self.uncalibrated: dict[str, float] = {}
+        self.calibrations: dict[str, Calibration] = {}
         self.ledger = Ledger()
         self.owners: tuple[str, ...] = ()
         self.sources: tuple[str, ...] = ()
@@ -92,7 +92,7 @@ class FusionState:
         twin.__dict__.update(self.__dict__)
         twin.graph, twin.ledger = self.graph.copy(), self.ledger.copy()
         twin.nodes, twin.links, twin.sightings = dict(self.nodes), self.links.copy(), dict(self.sightings)
-        twin.noise, twin.uncalibrated = dict(self.noise), dict(self.uncalibrated)
+        twin.noise, twin.calibrations = dict(self.noise), dict(self.calibrations)
         twin.counts, twin.said, twin.tried = dict(self.counts), dict(self.said), dict(self.tried)
         twin.navigations, twin.notices = dict(self.navigations), []
         return twin
@@ -154,6 +154,11 @@ class FusionState:
     def scale_sigma(self, node: NodeState) -> float:
         """Standard deviation of the prior of the scale of a node's unit."""
         return physics.STRAPDOWN_SCALE_SIGMA if node.node in self.navigations else physics.SCALE_SIGMA
+
+    def range_scale_sigma(self, technology: str) -> float:
+        """Standard deviation of the prior of a ranging technology's scale, of the kind it is taken for."""
+        known = self.calibrations.get(technology)
+        return scale_sigma(0.0 if known is None else known.uncalibrated, self.narrow_sigma(technology))
 
     def narrow_sigma(self, technology: str) -> float:
         """Standard deviation of a ranging technology's scale where it is calibrated."""

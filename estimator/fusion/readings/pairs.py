@@ -12,6 +12,7 @@ from estimator.fusion.entering.technologies import (
     path_loss_states,
     technology_states,
 )
+from estimator.fusion.learned.calibration import Calibration
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -92,7 +93,7 @@ class Pairs:
                     fused_t[name_a] = fused_t[name_b] = t
                 continue
             if kind == RANGE and "unit" in (a.node.mode, b.node.mode):
-                state.uncalibrated.setdefault(source, physics.UNCALIBRATED)
+                state.calibrations.setdefault(source, Calibration())
             technology = numbers.get(source)
             if technology is None:
                 technology = self._technology(kind, source, between)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.fusion import physics
-from estimator.fusion.learned.calibration import bias_sigma_m, scale_sigma
+from estimator.fusion.learned.calibration import bias_sigma_m
 from estimator.fusion.memory.prior import Key
 from estimator.graph.dense import Array, Indices
 from estimator.smoothing.keyframes.layout import Layout
@@ -75,8 +75,7 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
         if key[0] == "range":
             name = state.sources[key[1]]
             mean += [0.0, 0.0]
-            scale = scale_sigma(state.uncalibrated.get(name, 0.0), state.narrow_sigma(name))
-            known_by += [scale**-2, bias_sigma_m(name) ** -2]
+            known_by += [state.range_scale_sigma(name) ** -2, bias_sigma_m(name) ** -2]
         else:
             mean += [physics.RSSI_POWER_DBM, physics.RSSI_EXPONENT]
             known_by += [physics.RSSI_POWER_SIGMA_DB**-2, physics.RSSI_EXPONENT_SIGMA**-2]

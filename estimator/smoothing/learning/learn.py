@@ -10,7 +10,7 @@ import numpy as np
 from msgspec.structs import replace
 from numba import njit
 
-from estimator.fusion.learned.calibration import scale_sigma, told_of, uncalibrated
+from estimator.fusion.learned.calibration import Calibration, scale_sigma, told_of, uncalibrated
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.walks import STATES, Motion
@@ -145,9 +145,9 @@ def calibrate(state: FusionState, problem: Problem, x: Array, border: Array) -> 
         if key[0] == "range" and key not in known and problem.rows.by_units(key[1]):
             name = state.sources[key[1]]
             narrow = state.narrow_sigma(name)
-            sigma = scale_sigma(state.uncalibrated.get(name, 0.0), narrow)
+            sigma = state.range_scale_sigma(name)
             told = uncalibrated(sigma, float(x[size + start]), float(border[start, start]), narrow)
-            state.uncalibrated[name] = told
+            state.calibrations[name] = Calibration(told, narrow, sigma)
             # Another prior bends everything: what follows from it is not left for later.
             state.due = state.due or scale_sigma(told, narrow) != sigma
 

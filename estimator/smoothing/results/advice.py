@@ -15,6 +15,7 @@ from estimator.fusion.entering.technologies import UNTOLD_POWER
 from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.report import covariance_of
 from estimator.graph.dense import Array
 
 SUGGESTIONS_MAX = 5
@@ -55,7 +56,7 @@ def advise(state: FusionState, name: str) -> Advice | None:
     node = state.nodes[name]
     if not node.decided or node.mode == "fixed":
         return None
-    covariance = state.graph.covariance()
+    covariance = covariance_of(state)
     rows = state.graph.rows(node.position)
     here = state.graph.value(node.position)
     now = float(np.trace(covariance[rows, rows][:2, :2]))

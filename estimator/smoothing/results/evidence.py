@@ -23,6 +23,7 @@ from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
 from estimator.smoothing.readings.rows import Rows
+from estimator.smoothing.results.calibrated import doubted, scales
 from estimator.smoothing.results.swung import last_headings, responses, swung
 
 HELD_MAX = 30
@@ -71,14 +72,15 @@ def explain(
     else:
         return None
     solved.chain.solve()
-    headings = last_headings(layout)
-    told = responses(layout, solved, [start, start + 1, start + 2, *headings])
+    headings, judged = last_headings(layout), scales(layout)
+    told = responses(layout, solved, [start, start + 1, start + 2, *headings, *judged])
     covariance = 0.5 * (told[start : start + 3, :3] + told[start : start + 3, :3].T)
     doubt = doubt_m2(otherwise(layout, solved.x, modes).get(name, ()), solved.x[start : start + 2])
     across = told[:, :2]
     total = float(np.trace(covariance[:2, :2]))
     doubt[2, 2] += node.doubt_up_m2
-    doubt[:2, :2] += swung(told[:, 3:], headings, start)
+    doubt[:2, :2] += swung(told[:, 3 : 3 + len(headings)], headings, start)
+    doubt += doubted(judged, solved.x, told[:, 3 + len(headings) :], start)
     rows = problem.rows
     flat = _flat(layout, rows)
     carried = np.einsum(

@@ -4,9 +4,18 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from estimator.fusion import physics
-from estimator.fusion.learned.calibration import TRUSTED, narrow_sigma, scale_sigma, uncalibrated
+from estimator.fusion.learned.calibration import (
+    TRUSTED,
+    Calibration,
+    doubt,
+    narrow_sigma,
+    scale_sigma,
+    uncalibrated,
+)
 
 NARROW = narrow_sigma(0.0)
 SIGMAS = [scale_sigma(0.0, NARROW), 0.03, scale_sigma(1.0, NARROW)]
@@ -69,3 +78,27 @@ def test_where_other_ranges_hardly_scatter_many_echoes_are_no_reason_to_let_a_sc
     """What walls make of a range scatters as much as it makes it longer."""
     assert narrow_sigma(0.4, 0.3 / 10.0) > 0.03
     assert narrow_sigma(0.4, 0.1 / 50.0) < 0.006
+
+
+@given(
+    share=st.floats(0.0, 1.0),
+    said=st.floats(-0.3, 0.3),
+    alone=st.floats(0.001, 1.0),
+    wide=st.booleans(),
+)
+def test_what_a_scale_may_be_otherwise_adds_its_second_moment(
+    share: float, said: float, alone: float, wide: bool
+) -> None:
+    """Against both posteriors, each written out from what the readings alone say."""
+    sigmas = (physics.RANGE_SCALE_WIDE, NARROW) if wide else (NARROW, physics.RANGE_SCALE_WIDE)
+    (shown, variance), (other, unsure) = (
+        (said * sigma**2 / (sigma**2 + alone**2), sigma**2 * alone**2 / (sigma**2 + alone**2))
+        for sigma in sigmas
+    )
+    odds = 1.0 - share if wide else share
+    added = doubt(Calibration(share, NARROW, sigmas[0]), shown, variance) * variance**2
+    assert added == pytest.approx(odds * ((other - shown) ** 2 + max(unsure - variance, 0.0)), abs=1e-9)
+
+
+def test_before_a_scale_is_estimated_there_is_no_doubt_of_it() -> None:
+    assert doubt(Calibration(), 0.0, physics.RANGE_SCALE_WIDE**2) == 0.0
