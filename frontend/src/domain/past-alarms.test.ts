@@ -1,4 +1,5 @@
 import { expect, test } from "vitest";
+import stories from "../../../tests/backend/tracking/alarm_stories.json";
 import { alarmsInLine, type LoggedAlarm, raisedOf } from "./past-alarms";
 import { anAlarm, NOON } from "./samples";
 import type { FrameAlarm } from "./types";
@@ -28,15 +29,23 @@ test("a line without an alarm has none", () => {
   expect(alarmsInLine(line([{ kind: "status", t: NOON, node: "ff1" }]))).toEqual([]);
 });
 
-test("an alarm that its unit repeats was raised once, until it is cleared", () => {
-  expect(times(said("raised", 0, 1), said("raised", 5, 2), said("raised", 90, 3))).toEqual([0]);
-  expect(times(said("raised", 0, 1), said("cleared", 5, 2), said("raised", 9, 3))).toEqual([0, 9]);
+test.each(stories)("the server's rule: $what", ({ said: story, raised }) => {
+  const heard = story.map(([state, after_s, text], index) => ({
+    ...said(state as FrameAlarm["state"], Number(after_s), index),
+    text: text as string | null,
+  }));
+  expect(times(...heard)).toEqual(raised);
 });
 
-test("an acknowledged alarm that sounds on is the same one, one that comes after a while is another", () => {
-  const heard = [said("raised", 0, 1), said("acknowledged", 4, 2), said("raised", 20, 3)];
-  expect(times(...heard)).toEqual([0]);
-  expect(times(...heard, said("raised", 80, 4))).toEqual([0, 80]);
+test("an order to evacuate that was lifted is over: its words are new again", () => {
+  const order = (state: FrameAlarm["state"], after_s: number, text: string | null = null) => ({
+    ...said(state, after_s, after_s),
+    alarm: "evacuate" as const,
+    text,
+  });
+  const lifted = [order("raised", 0, "all out"), order("cleared", 5)];
+  const again = [order("raised", 9), order("acknowledged", 10), order("raised", 11, "all out")];
+  expect(times(...lifted, ...again)).toEqual([0, 9, 11]);
 });
 
 test("it does not matter which part of the log was read first", () => {

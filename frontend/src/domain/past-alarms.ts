@@ -1,8 +1,11 @@
 /** Alarms of the past, out of the lines of the log: what was raised, when. */
+import { alarmKey, isCall } from "./alarms";
 import type { FrameAlarm } from "./types";
 
 /** Units repeat an alarm while it sounds: a raise so soon after the last one is the same alarm (s). */
 const REPEAT_S = 30;
+/** A unit may say something new each time it repeats itself: the first words and the newest are kept. */
+const TEXTS_KEPT = 8;
 
 /** An alarm reading, and its place in the log. */
 export interface LoggedAlarm extends FrameAlarm {
@@ -28,21 +31,88 @@ export function alarmsInLine(line: string): LoggedAlarm[] {
 
 /** Of everything said of alarms, in whatever order it was read: the alarms, as they were raised. */
 export function raisedOf(said: readonly LoggedAlarm[]): FrameAlarm[] {
-  const raised: FrameAlarm[] = [];
-  const known = new Map<string, { state: FrameAlarm["state"]; calledT: number }>();
+  const stories = new Map<string, Story>();
   for (const { seq: _, ...one } of [...said].sort((a, b) => a.seq - b.seq)) {
-    const key = `${one.node} ${one.alarm}`;
-    const before = known.get(key);
-    if (one.state !== "raised") {
-      known.set(key, { state: one.state, calledT: before?.calledT ?? Number.NEGATIVE_INFINITY });
-      continue;
-    }
-    const again = before !== undefined && one.t <= before.calledT;
-    const sounding = before !== undefined && one.t - before.calledT <= REPEAT_S;
-    const same = before?.state === "raised" || (before?.state === "acknowledged" && sounding);
-    if (again) continue;
-    if (!same) raised.push(one);
-    known.set(key, { state: same ? (before?.state ?? "raised") : "raised", calledT: one.t });
+    const known = stories.get(alarmKey(one));
+    if (known === undefined) stories.set(alarmKey(one), new Story(one));
+    else known.hear(one);
   }
-  return raised;
+  return [...stories.values()].flatMap(({ raised }) => raised).sort((a, b) => a.t - b.t);
+}
+
+/**
+ * One alarm of one node, as the server follows it (`backend/tracking/alarms.py`): both are held to the stories
+ * in `tests/backend/tracking/alarm_stories.json`, so that the timeline marks what was shown.
+ */
+class Story {
+  /** Each time that it was raised. */
+  readonly raised: FrameAlarm[] = [];
+  private readonly kind: FrameAlarm["alarm"];
+  private state: FrameAlarm["state"];
+  private acknowledged: boolean;
+  private t: number;
+  /** When it was last raised, or raised again; null: an answer came, but no call yet. */
+  private calledT: number | null;
+  private texts: string[] = [];
+
+  constructor(first: FrameAlarm) {
+    this.kind = first.alarm;
+    this.state = first.state;
+    this.t = first.t;
+    this.acknowledged = first.state === "acknowledged";
+    this.calledT = first.state === "raised" ? first.t : null;
+    // What was cleared before it was heard of was never shown.
+    if (first.state !== "cleared") this.raised.push(first);
+    this.say(first.text);
+  }
+
+  hear(said: FrameAlarm): void {
+    if (said.state === "raised") {
+      this.call(said);
+      return;
+    }
+    if (said.state === "acknowledged") {
+      this.acknowledged = true;
+      if (this.state === "cleared") return;
+    }
+    this.state = said.state;
+    this.say(said.text);
+  }
+
+  /** Whether it is shown: the unit's own clearing is no answer to its call. */
+  private get stands(): boolean {
+    if (this.state !== "cleared") return true;
+    return isCall(this.kind) && this.calledT !== null && !this.acknowledged;
+  }
+
+  private call(said: FrameAlarm): void {
+    const lastT = this.calledT ?? this.t;
+    if (said.t <= lastT) {
+      // The answer came by a quicker way than the call: this is when it was called.
+      if (this.calledT === null) {
+        this.t = this.calledT = said.t;
+        this.raised.splice(-1, 1, said);
+        this.say(said.text);
+      }
+      return;
+    }
+    const newWords = Boolean(said.text) && !this.texts.includes(said.text ?? "");
+    const sounding = said.t - lastT <= REPEAT_S;
+    const answered = this.state === "acknowledged" && (newWords || !sounding);
+    if (this.state === "cleared" || answered) {
+      if (!this.stands) this.texts = [];
+      this.state = "raised";
+      this.acknowledged = false;
+      this.t = said.t;
+      this.raised.push(said);
+    }
+    this.calledT = said.t;
+    this.say(said.text);
+  }
+
+  private say(text: string | null | undefined): void {
+    if (!text || this.texts.includes(text)) return;
+    this.texts.push(text);
+    if (this.texts.length > TEXTS_KEPT) this.texts.splice(1, 1);
+  }
 }

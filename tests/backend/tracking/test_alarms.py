@@ -1,5 +1,9 @@
 """Alarms stand until a person has acknowledged them and they are cleared, with all that was said."""
 
+import json
+from pathlib import Path
+from typing import Any
+
 import pytest
 
 from backend.tracking.alarms import REPEAT_S, TEXTS_KEPT
@@ -7,6 +11,7 @@ from backend.tracking.board import Board
 from estimator.measurements import Alarm
 from estimator.measurements.status import AlarmKind, AlarmState
 
+STORIES = json.loads((Path(__file__).parent / "alarm_stories.json").read_text())
 LUNAR = "Location: second floor, corridor. Unit: E7. Name: Novak. Assignment: attack. Resources: air."
 
 
@@ -30,6 +35,24 @@ def acknowledged(t: float, kind: AlarmKind = "mayday", text: str | None = None) 
 
 def cleared(t: float, kind: AlarmKind = "mayday", text: str | None = None) -> Alarm:
     return alarm("cleared", t, kind, text)
+
+
+def times_of(readings: list[Alarm]) -> list[float]:
+    """When the alarm was raised, each time, by what is shown as one reading after the other comes."""
+    times: list[float] = []
+    for heard in range(1, len(readings) + 1):
+        for _, _, t, _ in shown(*readings[:heard]):
+            if times and t < times[-1]:
+                times[-1] = t  # the call whose answer came first
+            elif t not in times:
+                times.append(t)
+    return times
+
+
+@pytest.mark.parametrize("story", STORIES, ids=lambda story: str(story["what"]))
+def test_an_alarm_is_raised_as_often_as_the_timeline_of_the_screen_marks_it(story: dict[str, Any]) -> None:
+    """The screen reads the log by the same rule (`past-alarms.ts`), and is held to the same stories."""
+    assert times_of([alarm(state, t, text=text) for state, t, text in story["said"]]) == story["raised"]
 
 
 def test_a_mayday_stands_until_it_is_acknowledged_and_cleared() -> None:
