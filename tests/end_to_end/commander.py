@@ -1,14 +1,17 @@
-"""The commander before the screen: beside `canvas` the only file that knows the page's structure."""
+"""The commander before the screen: beside `canvas`, `layout`, `others` alone in knowing the page."""
 
+import json
 import re
 import time
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote, urlencode
 
-from playwright.sync_api import Locator, Page
+from playwright.sync_api import Locator, Page, WebSocketRoute
 
 from tests.end_to_end.canvas import MapSeen
+from tests.end_to_end.layout import LayoutSeen
+from tests.end_to_end.others import OthersSeen
 from tests.running import eventually
 
 
@@ -22,7 +25,7 @@ class BoardRow:
     error: str
 
 
-class Commander(MapSeen):
+class Commander(MapSeen, LayoutSeen, OthersSeen):
     """What a commander sees and does.
 
     Args:
@@ -80,19 +83,6 @@ class Commander(MapSeen):
             name: BoardRow(status, _seconds(age), level, error)
             for name, (status, age, level, error) in rows.items()
         }
-
-    def cut_off(self) -> list[str]:
-        """The texts on the board that do not fit where they stand."""
-        found: list[str] = self.page.evaluate(
-            """() => [...document.querySelectorAll('[data-testid=responder]')].flatMap((row) =>
-              [...row.querySelectorAll('span')].filter((part) => !part.closest('.unseen') && (
-                part.scrollWidth > part.clientWidth + 1 && getComputedStyle(part).overflowX !== 'visible'
-                || part.getBoundingClientRect().right > row.getBoundingClientRect().right + 1
-                || part.matches('.name') && part.nextElementSibling.getBoundingClientRect().left
-                   < part.getBoundingClientRect().left + part.scrollWidth - 1)
-              ).map((part) => part.textContent.trim()))"""
-        )
-        return found
 
     def sees(self, name: str, status: str, within_s: float = 15.0) -> None:
         """Wait until the board gives a responder that status."""
@@ -161,6 +151,28 @@ class Commander(MapSeen):
         return self.page.get_by_test_id("connection-lost").is_visible()
 
     @property
+    def stands_still(self) -> bool:
+        """Whether it is said that the estimator could not go on."""
+        return self.page.get_by_test_id("stands-still").is_visible()
+
+    def hears_that_the_estimator_broke(self) -> None:
+        """From the next page on every picture comes with the notice that the server adds when it broke."""
+        broke = {"code": "estimator_failed", "t": 0.0, "text": "It broke.", "node": None}
+
+        def told(here: WebSocketRoute) -> None:
+            server = here.connect_to_server()
+
+            def hand_on(message: str | bytes) -> None:
+                said = json.loads(message)
+                if "notices" in said:
+                    said["notices"].append(broke)
+                here.send(json.dumps(said))
+
+            server.on_message(hand_on)
+
+        self.page.route_web_socket(re.compile("/live"), told)
+
+    @property
     def mode(self) -> str:
         """LIVE, REPLAY, CLOSED, or NOT LIVE."""
         return self.page.get_by_test_id("clock").locator(".mode").inner_text()
@@ -202,32 +214,6 @@ class Commander(MapSeen):
         """What the top bar says went wrong; nothing if nothing did."""
         said = self.page.locator("header [role=status]")
         return said.inner_text() if said.count() else ""
-
-    def sits_at_a_tablet(self) -> None:
-        """Use a screen of 1024 x 768."""
-        self.page.set_viewport_size({"width": 1024, "height": 768})
-
-    @property
-    def off_the_screen(self) -> list[str]:
-        """What reaches beyond the right edge of the screen."""
-        found: list[str] = self.page.evaluate(
-            """() => [...document.querySelectorAll('#app *')].filter((part) => !part.closest('.unseen')
-              && part.getBoundingClientRect().right > document.documentElement.clientWidth + 1)
-              .map((part) => `${part.tagName} ${part.className} ${part.textContent.trim().slice(0, 30)}`)"""
-        )
-        wide = self.page.evaluate(
-            "document.scrollingElement.scrollWidth - document.scrollingElement.clientWidth"
-        )
-        return found + ([f"the page is {wide} px too wide"] if wide > 0 else [])
-
-    @property
-    def card_left(self) -> float:
-        """Where the card begins (CSS pixels from the left of the map)."""
-        card = self.page.get_by_test_id("card").bounding_box()
-        assert card is not None
-        map_box = self.page.get_by_test_id("map").bounding_box()
-        assert map_box is not None
-        return card["x"] - map_box["x"]
 
     def goes_back_to_live(self) -> None:
         """Press the button back to live."""

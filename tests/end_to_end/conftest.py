@@ -59,6 +59,13 @@ def post(server: Server) -> Iterator[Post]:
 
 
 @pytest.fixture
+def nothing_left_open(post: Post) -> None:
+    """Close what was opened before: calls for help in it would be told on every screen."""
+    for incident in post.http.get("/incidents", params={"state": "active"}).json():
+        post.http.patch(f"/incidents/{incident['id']}", json={"state": "closed"})
+
+
+@pytest.fixture
 def commander(browser: Browser) -> Iterator[Commander]:
     """A commander with a fresh page; at the end no error may have gone unhandled on it."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, color_scheme="light")

@@ -37,9 +37,12 @@ def step(t: float, node: str, delta_m: Sequence[float]) -> Reading:
     return {"kind": "displacement", "t": t, "node": node, "delta_m": [float(value) for value in delta_m]}
 
 
-def alarm(t: float, node: str, kind: str = "mayday", state: str = "raised") -> Reading:
+def alarm(
+    t: float, node: str, kind: str = "mayday", state: str = "raised", text: str | None = None
+) -> Reading:
     """An alarm of a responder."""
-    return {"kind": "alarm", "t": t, "node": node, "alarm": kind, "state": state}
+    said = {} if text is None else {"text": text}
+    return {"kind": "alarm", "t": t, "node": node, "alarm": kind, "state": state, **said}
 
 
 def heard(post: Post, incident: str, *readings: Reading) -> None:

@@ -49,6 +49,25 @@ def test_a_screen_whose_server_was_killed_says_so_ages_and_reconnects_by_itself(
     post.http.close()
 
 
+def test_an_estimator_that_could_not_go_on_is_told_apart_from_silent_crews(
+    own_server: Server, commander: Commander
+) -> None:
+    post = Post(own_server.url)
+    incident = post.open_incident(clock="live")
+    now = time.time()
+    heard(post, incident, base(now), responder(now, "walker", "A", [2, 2, 0]))
+    commander.opens(own_server.url, incident)
+    assert not commander.stands_still
+
+    commander.hears_that_the_estimator_broke()
+    commander.reloads()
+    eventually(lambda: commander.stands_still)
+    assert not commander.connection_lost
+    assert commander.mode == "NOT LIVE"
+    commander.sees("WALKER", "Stale", within_s=3)
+    post.http.close()
+
+
 def test_on_a_tablet_a_lost_connection_pushes_nothing_off_the_screen_and_leaves_no_trace(
     own_server: Server, commander: Commander
 ) -> None:

@@ -7,13 +7,16 @@ const RENEW_EVERY_MS = 10_000;
 
 export interface AskingOwner {
   readonly incident: Incident | null;
+  renewed(incident: Incident): void;
+}
+
+export interface AskingDoor {
   readonly signInNeeded: boolean;
   /** The address names an incident that there is not: asking again would not bring it. */
   readonly deadLink: boolean;
   /** Looks for the first incident. */
   begin(): Promise<void>;
-  renewed(incident: Incident): void;
-  fail(cause: unknown): void;
+  failQuietly(cause: unknown): void;
 }
 
 export class Asking {
@@ -22,11 +25,14 @@ export class Asking {
   private heardSeq = -1;
   private quiet = false;
 
-  constructor(private readonly owner: AskingOwner) {
+  constructor(
+    private readonly owner: AskingOwner,
+    private readonly door: AskingDoor,
+  ) {
     setInterval(() => {
-      if (owner.signInNeeded) return;
+      if (door.signInNeeded) return;
       if (owner.incident === null) {
-        if (!owner.deadLink) void owner.begin();
+        if (!door.deadLink) void door.begin();
       } else if (performance.now() - this.askedMs >= RENEW_EVERY_MS) void this.renew(owner.incident.id);
     }, LOOK_EVERY_MS);
   }
@@ -46,8 +52,7 @@ export class Asking {
       const newest = await api.incident(id);
       if (this.owner.incident?.id === id) this.owner.renewed(newest);
     } catch (cause) {
-      // Whether the server can be reached, the live link tells.
-      if (cause instanceof api.RequestFailed && cause.status === 401) this.owner.fail(cause);
+      this.door.failQuietly(cause);
     }
   }
 }

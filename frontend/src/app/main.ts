@@ -16,6 +16,6 @@ if (token !== null) {
 
 // Read before anything writes the address.
 const screen = new Screen(parseDeepLink(window.location.hash));
-window.addEventListener("hashchange", () => void screen.follow(parseDeepLink(window.location.hash)));
+window.addEventListener("hashchange", () => void screen.door.follow(parseDeepLink(window.location.hash)));
 mount(App, { target, props: { screen } });
-void screen.begin();
+void screen.door.begin();

@@ -2,43 +2,37 @@
 import { alarmByNode, inOrder, type StandingAlarms, standingAlarms } from "../domain/alarms";
 import { incidentTime } from "../domain/clock";
 import { crewMarks } from "../domain/crews";
-import { type DeepLink, formatDeepLink } from "../domain/deep-link";
+import { type DeepLink, formatDeepLink, NOTHING } from "../domain/deep-link";
+import { blindElsewhere, callsElsewhere } from "../domain/elsewhere";
 import type { LevelChoice } from "../domain/levels";
 import { presenceOf } from "../domain/presence";
 import { isMoving, limitsOf, whileUnheard } from "../domain/staleness";
-import { type Extent, extentOf, within } from "../domain/timeline";
+import { type Extent, extentOf } from "../domain/timeline";
 import { Trails } from "../domain/trails";
 import type { DeltaMessage, FrameMessage, Incident, Track } from "../domain/types";
 import { nameOf } from "../domain/words";
 import * as api from "../sources/api";
 import { LiveSource } from "../sources/live-source";
-import { ReplaySource } from "../sources/replay-source";
 import { applyTheme, firstTheme, THEMES, type Theme } from "../ui/themes";
-import { Asking, type AskingOwner } from "./asking";
+import { Asking } from "./asking";
+import { Door, type DoorOwner } from "./door.svelte";
+import { Elsewhere } from "./elsewhere.svelte";
 import { Feed } from "./feed.svelte";
 import { Marks } from "./marks.svelte";
+import { Replay, type ReplayOwner } from "./replay.svelte";
 
 const TICK_MS = 250;
-const NOTHING: DeepLink = { incident: null, t: null, node: null, level: "all" };
 /** Trails are filled with as much of the past when an incident is opened (s). */
 const PAST_S = 1800;
 
-export class Screen implements AskingOwner {
-  incidents = $state.raw<readonly Incident[]>([]);
+export class Screen implements DoorOwner, ReplayOwner {
   incident = $state.raw<Incident | null>(null);
   /** Alarms of the live incident, also while its past is looked at. */
   standing = $state.raw<StandingAlarms>(new Map());
-  mode = $state<"live" | "replay">("live");
-  paused = $state(false);
-  speed = $state(1);
   level = $state<LevelChoice>("all");
   selected = $state<string | null>(null);
   theme = $state<Theme>(firstTheme());
   trail_s = $state(300);
-  signInNeeded = $state(false);
-  trouble = $state<string | null>(null);
-  /** Only a person can tell what to show instead. */
-  deadLink = false;
   /** Local monotonic clock at the last tick (ms). */
   localMs = $state(performance.now());
   readonly trails = new Trails();
@@ -49,33 +43,28 @@ export class Screen implements AskingOwner {
   private trackList = $state.raw<readonly Track[]>([]);
   /** First moment of the incident that this screen has seen (Unix s). */
   private earliestT = $state(Number.POSITIVE_INFINITY);
-  private replaySource: ReplaySource | null = null;
-  private wanted = $state.raw<DeepLink>(NOTHING);
-  /** An attempt to load what the address names is under way. */
-  private beginning = false;
-  /** What the replay's source can seek. */
-  private replayExtent: Extent = { from: 0, to: 0 };
+  /** What the address named when the page was opened. */
+  private readonly wanted = $state.raw<DeepLink>(NOTHING);
 
   /** The live incident is followed all the time: an alarm must reach whoever looks at the past. */
   private readonly live = new Feed({
     rate: () => (this.incident?.clock === "live" && this.incident.state === "active" ? 1 : 0),
     changed: (message) => this.liveChanged(message),
     heartbeat: ({ seq }) => this.asking.heartbeat(seq),
-    lost: () => void this.refresh().catch((cause) => this.fail(cause)),
-    back: () => void this.refresh().catch((cause) => this.fail(cause)),
+    lost: () => void this.door.refresh().catch((cause) => this.door.fail(cause)),
+    back: () => void this.door.refresh().catch((cause) => this.door.fail(cause)),
   });
-  private readonly asking = new Asking(this);
-  private readonly replay = new Feed({
-    rate: () => (this.paused ? 0 : this.speed),
-    changed: () => undefined,
-    heartbeat: ({ ended }) => {
-      if (ended) this.paused = true;
-    },
-    lost: () => undefined,
-    back: () => undefined,
-  });
+  readonly door: Door = new Door(this);
+  readonly replay: Replay = new Replay(this);
+  private readonly asking = new Asking(this, this.door);
+  private readonly elsewhere = new Elsewhere(
+    { active: api.activeIncidents, frame: api.frame },
+    this,
+    this.door,
+  );
 
-  private readonly feed = $derived(this.mode === "live" ? this.live : this.replay);
+  readonly mode = $derived<"live" | "replay">(this.replay.on ? "replay" : "live");
+  private readonly feed = $derived(this.replay.on ? this.replay.feed : this.live);
   readonly picture = $derived(this.feed.picture);
   /** As the incident is now, also while its past is looked at: a live alarm has the live place. */
   readonly livePicture = $derived(this.live.picture);
@@ -88,9 +77,9 @@ export class Screen implements AskingOwner {
   readonly closed = $derived(this.incident?.state === "closed");
   readonly presence = $derived(
     presenceOf({
-      replay: this.mode === "replay",
+      replay: this.replay.on,
       closed: this.closed,
-      heard: this.lostLink === null && this.live.picture !== null,
+      heard: this.lostLink === null && this.live.picture !== null && !this.live.picture.standsStill,
     }),
   );
   /** Incident time (Unix s). */
@@ -105,9 +94,9 @@ export class Screen implements AskingOwner {
   /** Who is in alarm in what is shown. */
   readonly alarms = $derived(
     alarmByNode(
-      this.mode === "live"
-        ? this.alarmList.flatMap(({ alarm, cleared }) => (cleared ? [] : [alarm]))
-        : (this.picture?.alarms ?? []),
+      this.replay.on
+        ? (this.picture?.alarms ?? [])
+        : this.alarmList.flatMap(({ alarm, cleared }) => (cleared ? [] : [alarm])),
     ),
   );
   readonly extent = $derived<Extent>(
@@ -125,65 +114,37 @@ export class Screen implements AskingOwner {
       ? this.wanted
       : {
           incident: this.incident.id,
-          t: this.mode === "replay" && this.paused ? this.now : null,
+          t: this.replay.on && this.replay.paused ? this.now : null,
           node: this.selected,
           level: this.level,
         },
   );
   readonly address = $derived(formatDeepLink(this.shown));
+  readonly pastT = $derived(this.replay.on ? this.now : null);
+  readonly lossIsSaid = $derived(this.lostLink !== null);
+  readonly callsElsewhere = $derived(
+    callsElsewhere(this.elsewhere.active, this.incident?.id ?? null, this.elsewhere.glimpses),
+  );
+  readonly blindElsewhere = $derived(
+    blindElsewhere(this.elsewhere.active, this.incident?.id ?? null, this.elsewhere.glimpses),
+  );
+  /** For how long the other incidents have not been heard of (s); null where there is nothing to be said. */
+  readonly elsewhereSilentS = $derived(this.lossIsSaid ? null : this.elsewhere.silentS(this.localMs));
 
-  /** @param wanted what the address named when the page was opened */
   constructor(wanted: DeepLink) {
     this.wanted = wanted;
+    void this.elsewhere.begin();
     applyTheme(this.theme);
     setInterval(() => {
       this.localMs = performance.now();
     }, TICK_MS);
   }
 
-  /** Loads the list of incidents and opens the one that the address names, else the newest active one. */
-  async begin(): Promise<void> {
-    if (this.beginning) return;
-    this.beginning = true;
-    const link = this.shown;
-    try {
-      await this.refresh();
-      this.signInNeeded = false;
-      await this.follow({ ...link, incident: link.incident ?? this.incidents[0]?.id ?? null });
-    } catch (cause) {
-      this.fail(cause);
-    } finally {
-      this.beginning = false;
-    }
-  }
-
-  /** Shows what a link names; nothing new where it names no incident. */
-  async follow(link: DeepLink): Promise<void> {
-    try {
-      if (link.incident !== null) await this.open(link.incident, link);
-    } catch (cause) {
-      this.deadLink = cause instanceof api.RequestFailed && cause.status === 404;
-      this.fail(cause);
-    }
-  }
-
-  async refresh(): Promise<void> {
-    const list = await api.incidents();
-    this.incidents = list;
-    const current = list.find(({ id }) => id === this.incident?.id);
-    if (current) this.incident = current;
-    this.trouble = null;
-  }
-
-  /** Shows an incident as it is now, on all storeys. */
-  choose(id: string): Promise<void> {
-    return this.follow({ ...NOTHING, incident: id });
-  }
-
-  private async open(id: string, { t, node, level }: DeepLink): Promise<void> {
-    const incident = await api.incident(id);
-    this.goLive();
-    this.trouble = null;
+  /** Shows an incident, as the link has it. */
+  async open(incident: Incident, { t, node, level }: DeepLink): Promise<void> {
+    const { id } = incident;
+    if (this.incident !== null) this.elsewhere.forget(this.incident.id);
+    this.replay.end();
     this.incident = incident;
     this.standing = new Map();
     this.marks.clear();
@@ -193,7 +154,7 @@ export class Screen implements AskingOwner {
     this.trails.clear();
     this.earliestT = Number.POSITIVE_INFINITY;
     this.live.follow(new LiveSource(id));
-    if (t !== null) this.replayFrom(t, true);
+    if (t !== null) this.replay.begin(t, true);
     await this.fillPast(id);
     if (this.incident.id === id) void this.marks.readPast(id, this.incident.last_seq);
   }
@@ -204,56 +165,7 @@ export class Screen implements AskingOwner {
 
   /** Back to what is now. */
   goLive(): void {
-    this.mode = "live";
-    this.paused = false;
-    this.speed = 1;
-    this.replay.leave();
-    this.replaySource = null;
-  }
-
-  /** Shows the incident as it was. */
-  replayFrom(t: number, paused: boolean): void {
-    if (this.incident === null) return;
-    const { from, to } = this.extent;
-    const begin = Math.max(0, Math.min(from, this.incident.first_t ?? from, t));
-    const end = Math.max(to, t);
-    const at = within({ from: begin, to: end }, t);
-    const options = { begin, at, to: end, speed: this.speed, paused };
-    this.replayExtent = { from: begin, to: end };
-    this.replaySource = new ReplaySource(this.incident.id, options);
-    this.replay.follow(this.replaySource);
-    this.paused = paused;
-    this.mode = "replay";
-    this.replay.keepTime(at);
-  }
-
-  seek(t: number): void {
-    const at = within(this.extent, t);
-    // The incident goes on while its past is looked at: what came since needs a wider replay.
-    if (this.replaySource === null || within(this.replayExtent, at) !== at) {
-      this.replayFrom(at, this.replaySource === null || this.paused);
-      return;
-    }
-    this.replaySource.seek(at);
-    this.replay.keepTime(at);
-  }
-
-  setPaused(paused: boolean): void {
-    if (this.replaySource === null) {
-      this.replayFrom(this.now, true);
-      return;
-    }
-    const t = this.now;
-    this.paused = paused;
-    this.replaySource.setPaused(paused);
-    this.replay.keepTime(t);
-  }
-
-  setSpeed(speed: number): void {
-    const t = this.now;
-    this.speed = speed;
-    this.replaySource?.setSpeed(speed);
-    if (this.replaySource !== null) this.replay.keepTime(t);
+    this.replay.end();
   }
 
   nextTheme(): void {
@@ -284,13 +196,5 @@ export class Screen implements AskingOwner {
       if (state.role === "breadcrumb") crumbs.add(state.node);
     }
     this.marks.drops(list, crumbs);
-  }
-
-  fail(cause: unknown): void {
-    const status = cause instanceof api.RequestFailed ? cause.status : null;
-    if (status === 401) this.signInNeeded = true;
-    // That the server cannot be reached is said over everything already.
-    else if (status !== 0 || this.lostLink === null)
-      this.trouble = cause instanceof Error ? cause.message : String(cause);
   }
 }

@@ -45,14 +45,22 @@ export function answered(
 
 const URGENCY: Record<FrameAlarm["alarm"], number> = { mayday: 0, evacuate: 1, pass: 2, help: 3 };
 
+/** Whether a responder calls for help by it; `evacuate` is an order to it. */
+export function isCall(alarm: FrameAlarm["alarm"]): boolean {
+  return alarm !== "evacuate";
+}
+
 /** Most urgent first: not acknowledged before acknowledged, then by kind, then the oldest. */
-export function inOrder(standing: StandingAlarms): StandingAlarm[] {
-  return [...standing.values()].sort(
-    (a, b) =>
-      Number(a.acknowledged) - Number(b.acknowledged) ||
-      URGENCY[a.alarm.alarm] - URGENCY[b.alarm.alarm] ||
-      a.alarm.t - b.alarm.t,
+export function byUrgency(a: StandingAlarm, b: StandingAlarm): number {
+  return (
+    Number(a.acknowledged) - Number(b.acknowledged) ||
+    URGENCY[a.alarm.alarm] - URGENCY[b.alarm.alarm] ||
+    a.alarm.t - b.alarm.t
   );
+}
+
+export function inOrder(standing: StandingAlarms): StandingAlarm[] {
+  return [...standing.values()].sort(byUrgency);
 }
 
 /** The most urgent alarm of each node that is in one. */

@@ -9,6 +9,9 @@ export interface DeepLink {
   readonly level: LevelChoice;
 }
 
+/** Names nothing: live, on all storeys. */
+export const NOTHING: DeepLink = { incident: null, t: null, node: null, level: "all" };
+
 export function parseDeepLink(hash: string): DeepLink {
   const fields = new URLSearchParams(hash.replace(/^#/, ""));
   const level = fields.get("level");

@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import { pictureOf, withDelta } from "./picture";
-import { aDelta, aFrame, aNode, anAlarm, NOON } from "./samples";
+import { A_BREAK, aDelta, aFrame, aNode, anAlarm, NOON } from "./samples";
 
 const before = pictureOf(aFrame([aNode(), aNode({ node: "ff2" })], { alarms: [anAlarm()] }));
 
@@ -24,6 +24,15 @@ test("a delta's alarms are all that stand", () => {
 
 test("a delta introduces a node that was not known", () => {
   expect([...withDelta(before, aDelta([aNode({ node: "b1" })])).nodes.keys()]).toEqual(["ff1", "ff2", "b1"]);
+});
+
+test("a picture stands still as long as the server says that the estimator could not go on", () => {
+  const still = withDelta(before, aDelta([], { notices: [A_BREAK] }));
+  expect([before.standsStill, still.standsStill, withDelta(still, aDelta([])).standsStill]).toEqual([
+    false,
+    true,
+    false,
+  ]);
 });
 
 test("the picture before a delta stays as it was", () => {

@@ -15,6 +15,12 @@ export interface Picture {
   readonly clockT: number;
   readonly nodes: ReadonlyMap<string, Sighting>;
   readonly alarms: readonly FrameAlarm[];
+  /** The incident's estimator could not go on: nothing that is reported since is in the picture, no alarm either. */
+  readonly standsStill: boolean;
+}
+
+export function standsStill({ notices }: Pick<FrameMessage, "notices">): boolean {
+  return notices.some(({ code }) => code === "estimator_failed");
 }
 
 /** The picture that a whole frame shows. */
@@ -28,6 +34,7 @@ export function pictureOf(frame: FrameMessage): Picture {
     clockT: frame.clock_t,
     nodes,
     alarms: frame.alarms,
+    standsStill: standsStill(frame),
   };
 }
 
@@ -42,5 +49,6 @@ export function withDelta(picture: Picture, delta: DeltaMessage): Picture {
     clockT: delta.clock_t,
     nodes,
     alarms: delta.alarms,
+    standsStill: standsStill(delta),
   };
 }

@@ -39,6 +39,9 @@ export function anAlarm(over: Partial<FrameAlarm> = {}): FrameAlarm {
   return { node: "ff1", alarm: "mayday", state: "raised", t: NOON, text: null, ...over };
 }
 
+/** What the server says when the estimator of an incident could not go on. */
+export const A_BREAK = { code: "estimator_failed", t: NOON, text: "It broke.", node: null } as const;
+
 export function aFrame(nodes: FrameNode[], over: Partial<FrameMessage> = {}): FrameMessage {
   const times = { t: NOON, clock_t: NOON, newest_t: NOON };
   return { type: "frame", incident: "i1", seq: 1, ...times, nodes, alarms: [], notices: [], ...over };

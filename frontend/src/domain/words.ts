@@ -44,7 +44,7 @@ export function agoWords(age_s: number): string {
 }
 
 /** The callsign, and the node's own name where it has none. */
-export function nameOf(node: FrameNode): string {
+export function nameOf(node: Pick<FrameNode, "node" | "callsign">): string {
   return node.callsign || node.node;
 }
 

@@ -1,6 +1,6 @@
 /** Requests to the server, with their answers as values. */
 import createClient from "openapi-fetch";
-import type { Advice, Evidence, FrameAlarm, Incident, Track } from "../domain/types";
+import type { Advice, Evidence, Frame, FrameAlarm, Incident, Track } from "../domain/types";
 import type { components, paths } from "./schema";
 
 const client = createClient<paths>({ baseUrl: window.location.origin });
@@ -16,6 +16,9 @@ export class RequestFailed extends Error {
 }
 
 type Problem = components["schemas"]["Problem"];
+
+/** A look into another incident that takes longer than this is given up (ms). */
+const LOOK_WITHIN_MS = 5000;
 
 /** Who speaks in batches sent from this screen. */
 const GATEWAY = "command-post";
@@ -46,6 +49,20 @@ export async function incidents(): Promise<Incident[]> {
   return list.sort(
     (a, b) => Number(a.state === "closed") - Number(b.state === "closed") || b.created - a.created,
   );
+}
+
+/** The incidents that are not closed. Asked for again and again: a request that hangs must make room. */
+export async function activeIncidents(): Promise<Incident[]> {
+  const params = { query: { state: "active" as const } };
+  const signal = AbortSignal.timeout(LOOK_WITHIN_MS);
+  return answered(client.GET("/api/v1/incidents", { params, signal }));
+}
+
+/** What is known of an incident now. */
+export async function frame(id: string): Promise<Frame> {
+  const signal = AbortSignal.timeout(LOOK_WITHIN_MS);
+  const params = { path: { incident: id } };
+  return (await answered(client.GET("/api/v1/incidents/{incident}/frame", { params, signal }))) as Frame;
 }
 
 export async function incident(id: string): Promise<Incident> {

@@ -1,0 +1,90 @@
+/** Looking at the past of an incident: from which moment, how fast, and what the record shows of it. */
+import { type Extent, within } from "../domain/timeline";
+import type { Incident } from "../domain/types";
+import { ReplaySource } from "../sources/replay-source";
+import { Feed } from "./feed.svelte";
+
+export interface ReplayOwner {
+  readonly incident: Incident | null;
+  /** What the timeline spans. */
+  readonly extent: Extent;
+  /** Incident time of what is shown (Unix s). */
+  readonly now: number;
+}
+
+export class Replay {
+  /** The past is looked at. */
+  on = $state(false);
+  paused = $state(false);
+  speed = $state(1);
+  readonly feed = new Feed({
+    rate: () => (this.paused ? 0 : this.speed),
+    changed: () => undefined,
+    heartbeat: ({ ended }) => {
+      if (ended) this.paused = true;
+    },
+    lost: () => undefined,
+    back: () => undefined,
+  });
+  private source: ReplaySource | null = null;
+  /** What the source can seek. */
+  private reach: Extent = { from: 0, to: 0 };
+
+  constructor(private readonly owner: ReplayOwner) {}
+
+  /** Shows the incident as it was at `t` (Unix s), and goes on from there. */
+  begin(t: number, paused: boolean): void {
+    const { incident, extent } = this.owner;
+    if (incident === null) return;
+    const { from, to } = extent;
+    const begin = Math.max(0, Math.min(from, incident.first_t ?? from, t));
+    const end = Math.max(to, t);
+    const at = within({ from: begin, to: end }, t);
+    this.reach = { from: begin, to: end };
+    this.source = new ReplaySource(incident.id, { begin, at, to: end, speed: this.speed, paused });
+    this.feed.follow(this.source);
+    this.paused = paused;
+    this.on = true;
+    this.feed.keepTime(at);
+  }
+
+  /** Back to what is now. */
+  end(): void {
+    this.on = false;
+    this.paused = false;
+    this.speed = 1;
+    this.feed.leave();
+    this.source = null;
+  }
+
+  seek(t: number): void {
+    const at = within(this.owner.extent, t);
+    // The incident goes on while its past is looked at: what came since needs a wider replay.
+    if (this.source === null || within(this.reach, at) !== at) {
+      this.begin(at, this.source === null || this.paused);
+      return;
+    }
+    this.source.seek(at);
+    this.feed.keepTime(at);
+  }
+
+  /** Pauses or goes on; from live: pauses here. */
+  setPaused(paused: boolean): void {
+    if (this.source === null) {
+      this.begin(this.owner.now, true);
+      return;
+    }
+    const t = this.owner.now;
+    this.paused = paused;
+    this.source.setPaused(paused);
+    this.feed.keepTime(t);
+  }
+
+  setSpeed(speed: number): void {
+    const t = this.owner.now;
+    this.speed = speed;
+    if (this.source === null) return;
+    this.source.setSpeed(speed);
+    this.feed.keepTime(t);
+  }
+}
