@@ -7,6 +7,8 @@ others held where they are, which costs little, and the window as a whole only w
 import math
 from collections.abc import Iterable, Sequence
 
+import numpy as np
+
 from estimator.fusion.images import Image
 from estimator.smoothing.images.earlier import CLEARER, ITERATIONS
 from estimator.smoothing.images.flips import Flip
@@ -16,8 +18,9 @@ from estimator.smoothing.problem.solved import Solved
 
 SOON = 4
 """Iterations after which an image is given up that is hopeless."""
-HOPELESS, HELD = 50.0, 150.0
-"""What an image costs more, in log likelihood, that is given up; and with all others held where they are."""
+HOPELESS, HELD, ALONE = 50.0, 150.0, 10.0
+"""What an image costs more, in log likelihood, that is given up; with all others held where they are; and so
+where no reading ties him to any of them."""
 SLACKS_M = (1.0, 0.3, 0.1)
 """How far off an estimate may be at first whose way nobody has gone: with a unit turned, or others along."""
 
@@ -33,11 +36,12 @@ def solutions(asked: Asked, parts: Parts, solved: Solved, begun: Iterable[Begun]
         most: so many of them are solved as a whole.
     """
     found, tried = [Tried(solved, Flip(0, Image()))], list[Begun]()
+    tied = _tied(asked)
     for start in begun:
         if any(asked.same_start(start, other) for other in tried):
             continue
         tried.append(start)
-        led = _led(asked, parts, found, start)
+        led = _led(asked, parts, found, start, tied)
         if led is None:
             continue
         if most == 0:
@@ -59,10 +63,17 @@ def solutions(asked: Asked, parts: Parts, solved: Solved, begun: Iterable[Begun]
     return [best, *(one for one in found if one is not best)]
 
 
-def _led(asked: Asked, parts: Parts, found: Sequence[Tried], start: Begun) -> Begun | None:
+def _led(asked: Asked, parts: Parts, found: Sequence[Tried], start: Begun, tied: bool) -> Begun | None:
     """Where an image leads to with all others held where they are; None: to no solution that is not known.
 
     Two headings part soon, or they are one: first the beginning of a way is asked alone.
+
+    Args:
+        asked: of whom.
+        parts: of the window.
+        found: the solutions that are known.
+        start: where to begin.
+        tied: readings tie him to others who move.
     """
     layout, moving = asked.layout, {asked.of, *(i for i, _ in start.flip.along)}
     slacks, last = _slacks(start.flip), layout.length - 1
@@ -77,7 +88,7 @@ def _led(asked: Asked, parts: Parts, found: Sequence[Tried], start: Begun) -> Be
             # It hangs in the air there.
             return None
         led = Led(start._replace(x=x), part.more(x))
-        if led.cost > HELD:
+        if led.cost > (HELD if tied else ALONE):
             return None
         known = [Led(one.begun, part.more(one.solved.x)) for one in found]
         same = asked._replace(part=part).among(known, led)
@@ -88,6 +99,15 @@ def _led(asked: Asked, parts: Parts, found: Sequence[Tried], start: Begun) -> Be
         if not clearer and (until == last or asked.returned(known[same].to, start, led.to)):
             return None
     return led.to
+
+
+def _tied(asked: Asked) -> bool:
+    """Whether readings tie a walk to others who move."""
+    walks, pairs = asked.layout.walks, asked.problem.rows.pairs
+    own, others = walks[asked.of].number, [walk.number for walk in walks]
+    others.remove(own)
+    one, other = pairs[:, 2], pairs[:, 3]
+    return bool((np.isin(other[one == own], others)).any() or (np.isin(one[other == own], others)).any())
 
 
 def _solved(asked: Asked, found: Sequence[Tried], start: Begun, alone: bool) -> Solved | None:
