@@ -130,6 +130,8 @@ RSSI_POWER_SIGMA_DB = 10.0
 """At a metre: -40 dBm in paper A, -59 dBm of a usual BLE beacon."""
 RSSI_EXPONENT = 2.2
 RSSI_EXPONENT_SIGMA = 0.4
+RSSI_EXPONENT_LEAST = 1.0
+"""Along a corridor, which guides waves, powers fall by 12 to 18 dB a decade: M, 14 at least."""
 NEAR_M = 1.5
 NEAR_SIGMA_DB = 4.5
 """Paper A: relative ranges within 1.5 m are accurate, in fire as well."""

@@ -15,7 +15,7 @@ from estimator.fusion.memory.ledger import RSSI
 from estimator.graph.dense import Array
 from estimator.smoothing.images.earlier import CLEARER, ITERATIONS, LEAST
 from estimator.smoothing.images.flips import FIX
-from estimator.smoothing.images.otherwise import Mode, same_place
+from estimator.smoothing.images.otherwise import Mode, is_law, same_place
 from estimator.smoothing.keyframes.layout import Layout, Walk
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
@@ -67,6 +67,8 @@ def among(problem: Problem, solved: Solved, whole: bool) -> tuple[Solved, list[M
             other = problem.solve(other.x, iterations=ITERATIONS)
     except ValueError:
         # It hangs in the air there.
+        return solved, []
+    if not is_law(layout, other.x) and is_law(layout, solved.x):
         return solved, []
     best, less = (other, solved) if other.cost < solved.cost - CLEARER else (solved, other)
     odds = float(np.exp(best.cost - less.cost))

@@ -12,6 +12,7 @@ import numpy as np
 from estimator.fusion.images import Image
 from estimator.smoothing.images.earlier import CLEARER, ITERATIONS
 from estimator.smoothing.images.flips import Flip
+from estimator.smoothing.images.otherwise import is_law
 from estimator.smoothing.images.parts import Parts
 from estimator.smoothing.images.tried import Asked, Begun, Led, Tried
 from estimator.smoothing.problem.solved import Solved
@@ -124,10 +125,11 @@ def _solved(asked: Asked, found: Sequence[Tried], start: Begun, alone: bool) -> 
         there = problem.solve(start.x, slacks, len(slacks) + SOON)
         if there.cost > found[0].solved.cost + HOPELESS:
             return None
-        return there if there.rests else problem.solve(there.x, iterations=ITERATIONS)
+        there = there if there.rests else problem.solve(there.x, iterations=ITERATIONS)
     except ValueError:
         # It hangs in the air there.
         return None
+    return there if is_law(problem.layout, there.x) or not is_law(problem.layout, found[0].solved.x) else None
 
 
 def _slacks(flip: Flip) -> tuple[float, ...]:

@@ -11,7 +11,8 @@ from estimator.measurements.node import Node
 from estimator.measurements.rssi import Rssi
 from estimator.smoothing.images import solutions
 from estimator.smoothing.images.likeliest import Judged, likeliest
-from tests.estimator.smoothing.images.test_among import SECONDS, stroll
+from estimator.smoothing.images.otherwise import is_law
+from tests.estimator.smoothing.images.test_among import DBM, EXPONENT, SECONDS, SIGMA_DB, stroll
 from tests.estimator.smoothing.images.test_flips import solved_of
 
 SEEDS = range(4)
@@ -29,6 +30,27 @@ def two(seed: int) -> list[AnyReading]:
     readings, _ = stroll(seed)
     other = [replace(r, a="ff2") for r in stroll(seed + 50)[0] if isinstance(r, Rssi)]
     return [*readings, Node(t=0.0, node="ff2", role="responder"), *other]
+
+
+def side_by_side(seed: int) -> list[AnyReading]:
+    """The same two, who hear each other."""
+    chance, ways_m = np.random.default_rng(seed), (stroll(seed)[1], stroll(seed + 50)[1])
+    readings = two(seed)
+    for second, (one, other) in enumerate(zip(*ways_m, strict=True), start=1):
+        distance_m = float(np.sqrt(((one - other) ** 2).sum() + 1.0))
+        dbm = DBM - 10.0 * EXPONENT * np.log10(distance_m) + chance.normal(0.0, SIGMA_DB)
+        readings.append(Rssi(t=float(second), a="ff1", b="ff2", dbm=float(dbm)))
+    return readings
+
+
+def off_m(judged: Judged, seed: int) -> list[float]:
+    """How far off the two are, root mean square (m)."""
+    layout, found = judged.problem.layout, []
+    at = np.clip(layout.grid.astype(int) - 1, 0, SECONDS - 1)
+    for i, way_m in enumerate((stroll(seed)[1], stroll(seed + 50)[1])):
+        apart = layout.states(judged.solved.x, i)[:, :2] - way_m[at]
+        found.append(float(np.sqrt((apart**2).sum(axis=1).mean())))
+    return found
 
 
 def told(monkeypatch: pytest.MonkeyPatch, seed: int, alone: float) -> Told:
@@ -51,8 +73,12 @@ def test_fewer_are_solved_as_a_whole_and_everybody_is_where_he_is(monkeypatch: p
     many = [told(monkeypatch, seed, solutions.HELD) for seed in SEEDS]
     assert sum(one.solved for one in few) < 0.8 * sum(one.solved for one in many)
     for seed, one in zip(SEEDS, few, strict=True):
-        problem, solved = one.judged.problem, one.judged.solved
-        at = np.clip(problem.layout.grid.astype(int) - 1, 0, SECONDS - 1)
-        for i, way_m in enumerate((stroll(seed)[1], stroll(seed + 50)[1])):
-            off_m = problem.layout.states(solved.x, i)[:, :2] - way_m[at]
-            assert np.sqrt((off_m**2).sum(axis=1).mean()) < 4.0
+        assert max(off_m(one.judged, seed)) < 4.0
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_law_that_is_nearly_flat_leads_nobody_on_top_of_strong_radios(seed: int) -> None:
+    """By an exponent of 0.3 it fits 50 better, in log likelihood, and they were 5 to 7 m off."""
+    judged = likeliest(*solved_of(side_by_side(seed)))
+    assert is_law(judged.problem.layout, judged.solved.x)
+    assert max(off_m(judged, seed)) < 4.0
