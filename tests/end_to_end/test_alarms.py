@@ -52,7 +52,7 @@ def test_a_mayday_stands_until_a_person_has_acknowledged_and_cleared_it(
         ("alarm", "e7-1", "mayday", "acknowledged"),
         ("alarm", "e7-1", "mayday", "cleared"),
     ]
-    assert post.frame(incident)["alarms"] == []
+    eventually(lambda: post.frame(incident)["alarms"] == [])
 
 
 def test_a_mayday_that_the_unit_clears_by_itself_stands_until_a_person_has_seen_it(
@@ -67,7 +67,7 @@ def test_a_mayday_that_the_unit_clears_by_itself_stands_until_a_person_has_seen_
     eventually(lambda: commander.banners == [])
     states = [one["state"] for one in spoken_by_command_post(post, incident)]
     assert states == ["acknowledged"]
-    assert post.frame(incident)["alarms"] == []
+    eventually(lambda: post.frame(incident)["alarms"] == [])
 
 
 def test_the_board_has_room_for_the_callsign_of_a_responder_in_trouble_and_stale(
