@@ -8,6 +8,8 @@ from tests.running import Post, eventually
 
 Reading: TypeAlias = dict[str, object]
 
+LEVELS = [{"level": 0, "name": "Ground", "up_m": 0.0}, {"level": 1, "name": "First", "up_m": 3.0}]
+
 _batches = itertools.count()
 
 
@@ -62,3 +64,19 @@ def recorded(post: Post, incident: str, t: float) -> None:
         return None if answer is None else float(answer)
 
     eventually(lambda: (newest := last_t()) is not None and newest >= t)
+
+
+def two_on_two_storeys(post: Post, t: float, name: str = "Office") -> str:
+    """An incident of eight seconds: ff1 walks on the ground floor, ff2 stands on the first."""
+    incident = post.open_incident(name, levels=LEVELS)
+    heard(
+        post,
+        incident,
+        base(t),
+        responder(t, "ff1", "A", [2, 2, 0], sigma_m=0.2),
+        responder(t, "ff2", "A", [4, 2, 3], sigma_m=0.2),
+    )
+    for second in range(1, 9):
+        heard(post, incident, step(t + second, "ff1", [0.2, 0, 0]))
+    recorded(post, incident, t + 8)
+    return incident

@@ -1,27 +1,16 @@
 """All of the watching can be done from the keyboard."""
 
 from tests.end_to_end.commander import Commander
-from tests.end_to_end.scene import base, heard, recorded, responder, step
+from tests.end_to_end.scene import base, heard, responder, two_on_two_storeys
 from tests.running import Post, Server, eventually
 
 T0 = 1_763_712_345.0
-LEVELS = [{"level": 0, "name": "Ground", "up_m": 0.0}, {"level": 1, "name": "First", "up_m": 3.0}]
 
 
 def test_the_keys_pause_step_select_and_choose_storeys(
     server: Server, post: Post, commander: Commander
 ) -> None:
-    incident = post.open_incident(levels=LEVELS)
-    heard(
-        post,
-        incident,
-        base(T0),
-        responder(T0, "ff1", "A", [2, 2, 0], sigma_m=0.2),
-        responder(T0, "ff2", "A", [4, 2, 3], sigma_m=0.2),
-    )
-    for second in range(1, 9):
-        heard(post, incident, step(T0 + second, "ff1", [0.2, 0, 0]))
-    recorded(post, incident, T0 + 8)
+    incident = two_on_two_storeys(post, T0)
     commander.opens(server.url, incident)
     newest = commander.clock
     assert commander.mode == "LIVE"

@@ -3,11 +3,10 @@
 from pathlib import Path
 
 from tests.end_to_end.commander import Commander
-from tests.end_to_end.scene import base, heard, recorded, responder, step
+from tests.end_to_end.scene import LEVELS, base, heard, recorded, responder, step
 from tests.running import Post, Server, eventually, running
 
 T0 = 1_763_712_345.0
-LEVELS = [{"level": 0, "name": "Ground", "up_m": 0.0}, {"level": 1, "name": "First", "up_m": 3.0}]
 
 
 def two_incidents(post: Post) -> str:

@@ -6,29 +6,12 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.commander import Commander
-from tests.end_to_end.scene import alarm, base, heard, recorded, responder, step
+from tests.end_to_end.scene import alarm, base, heard, responder, two_on_two_storeys
 from tests.running import Post, Server, eventually
 
 pytestmark = pytest.mark.usefixtures("nothing_left_open")
 
 T0 = 1_763_712_345.0
-LEVELS = [{"level": 0, "name": "Ground", "up_m": 0.0}, {"level": 1, "name": "First", "up_m": 3.0}]
-
-
-def office(post: Post) -> str:
-    """The incident that the commander looks at: two responders on two storeys, eight seconds long."""
-    incident = post.open_incident("Office", levels=LEVELS)
-    heard(
-        post,
-        incident,
-        base(T0),
-        responder(T0, "ff1", "A", [2, 2, 0], sigma_m=0.2),
-        responder(T0, "ff2", "A", [4, 2, 3], sigma_m=0.2),
-    )
-    for second in range(1, 9):
-        heard(post, incident, step(T0 + second, "ff1", [0.2, 0, 0]))
-    recorded(post, incident, T0 + 8)
-    return incident
 
 
 def mill(post: Post, name: str = "Mill") -> str:
@@ -42,7 +25,7 @@ def mill(post: Post, name: str = "Mill") -> str:
 def test_a_mayday_in_another_incident_is_seen_and_one_tap_leads_there_and_back(
     server: Server, post: Post, commander: Commander
 ) -> None:
-    here, there = office(post), mill(post)
+    here, there = two_on_two_storeys(post, T0), mill(post)
     commander.follows_link(server.url, here, node="ff2", level=1)
     eventually(lambda: "FF2" in commander.card)
     assert commander.calls_elsewhere == []
@@ -78,7 +61,7 @@ def test_a_mayday_in_another_incident_is_seen_and_one_tap_leads_there_and_back(
 def test_who_is_called_away_from_the_past_comes_back_to_the_same_moment_and_place(
     server: Server, post: Post, commander: Commander
 ) -> None:
-    here, there = office(post), mill(post)
+    here, there = two_on_two_storeys(post, T0), mill(post)
     commander.opens(server.url, here)
     commander.turns_trails_off()
     commander.holds_the_map()
@@ -105,7 +88,7 @@ def test_who_is_called_away_from_the_past_comes_back_to_the_same_moment_and_plac
 def test_a_call_is_seen_in_an_incident_that_began_after_the_screen_was_opened(
     server: Server, post: Post, commander: Commander
 ) -> None:
-    commander.opens(server.url, office(post))
+    commander.opens(server.url, two_on_two_storeys(post, T0))
     there = post.open_incident("Barn", clock="live")
     heard(post, there, alarm(time.time(), "unit-7", kind="help"))
     eventually(lambda: commander.calls_elsewhere, within_s=3)
@@ -119,7 +102,7 @@ def test_a_call_is_seen_in_an_incident_that_began_after_the_screen_was_opened(
 def test_the_mayday_of_a_long_named_incident_has_room_on_every_tablet_and_for_gloves(
     server: Server, post: Post, commander: Commander, axe: Path
 ) -> None:
-    here = office(post)
+    here = two_on_two_storeys(post, T0)
     for number in range(5):
         there = mill(post, f"Warehouse {number} of a very long name " * 4)
         heard(post, there, alarm(time.time(), "w1", text="Location: rack 4"))
@@ -146,7 +129,7 @@ def test_the_mayday_of_a_long_named_incident_has_room_on_every_tablet_and_for_gl
 def test_it_is_said_when_the_other_incidents_cannot_be_seen(
     server: Server, post: Post, commander: Commander
 ) -> None:
-    here, there = office(post), mill(post)
+    here, there = two_on_two_storeys(post, T0), mill(post)
     commander.opens(server.url, here)
     time.sleep(2)  # a look or two
     assert commander.silence_elsewhere == ""

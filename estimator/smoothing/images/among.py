@@ -13,9 +13,11 @@ import numpy as np
 from estimator.fusion.images import Image
 from estimator.fusion.memory.ledger import RSSI
 from estimator.graph.dense import Array
-from estimator.smoothing.images.earlier import CLEARER, ITERATIONS, LEAST
+from estimator.measurements.rssi import DB_PER_NEPER
+from estimator.smoothing.images.earlier import CLEARER, LEAST
 from estimator.smoothing.images.flips import FIX
-from estimator.smoothing.images.otherwise import Mode, is_law, same_place
+from estimator.smoothing.images.otherwise import Mode, same_place
+from estimator.smoothing.images.reached import reached
 from estimator.smoothing.keyframes.layout import Layout, Walk
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
@@ -24,12 +26,9 @@ RADIOS = 3
 """What fewer radios leave open are images."""
 NEAR_S = 3.0
 """Signals fade and come back: for about so long somebody is near the radios that he has heard best."""
-DB_PER_NEPER = 20.0 / np.log(10.0)
-"""Powers weigh as the inverse of a distance does in free space."""
+FREE_SPACE = 2.0
+"""Powers weigh as the inverse of a distance does by this exponent."""
 SLACKS_M = (3.0, 1.0, 0.3, 0.1)
-SOON = 4
-HOPELESS = 50.0
-"""What a solution costs more, in log likelihood, that is given up after its first iterations."""
 
 
 class _Powers(NamedTuple):
@@ -61,14 +60,8 @@ def among(problem: Problem, solved: Solved, whole: bool) -> tuple[Solved, list[M
     moved = [i for i, walk in enumerate(layout.walks) if _put_among(problem, solved, i, walk, there)]
     if not moved:
         return solved, []
-    try:
-        other = problem.solve(there, SLACKS_M, len(SLACKS_M) + SOON)
-        if not other.rests and other.cost < solved.cost + HOPELESS:
-            other = problem.solve(other.x, iterations=ITERATIONS)
-    except ValueError:
-        # It hangs in the air there.
-        return solved, []
-    if not is_law(layout, other.x) and is_law(layout, solved.x):
+    other = reached(problem, there, SLACKS_M, solved)
+    if other is None:
         return solved, []
     best, less = (other, solved) if other.cost < solved.cost - CLEARER else (solved, other)
     odds = float(np.exp(best.cost - less.cost))
@@ -123,7 +116,7 @@ def centroids(t: Array, radio_m: Array, dbm: Array, times: Array) -> Array:
     """
     found = np.empty((len(times), 2))
     for k, time in enumerate(times.tolist()):
-        log_weight = dbm / DB_PER_NEPER - np.abs(t - time) / NEAR_S
+        log_weight = dbm / (FREE_SPACE * DB_PER_NEPER) - np.abs(t - time) / NEAR_S
         weight = np.exp(log_weight - log_weight.max())
         found[k] = weight @ radio_m / weight.sum()
     return found

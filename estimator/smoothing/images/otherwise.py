@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from estimator.fusion import physics
 from estimator.fusion.images import Image, Otherwise
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.layout import Layout
@@ -34,17 +33,6 @@ class Mode(NamedTuple):
     since_t: float
     way: Image
     images: Mapping[int, Image]
-
-
-def is_law(layout: Layout, x: Array) -> bool:
-    """Whether powers fall with the distance in an estimate, flat, as those of radios do.
-
-    By a law that is nearly flat, everybody's way may lead past on top of the radios that seem strong just
-    then: it fits better than the true one.
-    """
-    size = layout.length * layout.width
-    starts = [size + start for (kind, _), start in layout.technologies.items() if kind == "rssi"]
-    return all(float(x[start + 1]) > physics.RSSI_EXPONENT_LEAST for start in starts)
 
 
 def same_place(one_m: Array, other_m: Array) -> bool:

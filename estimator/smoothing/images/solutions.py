@@ -10,17 +10,15 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from estimator.fusion.images import Image
-from estimator.smoothing.images.earlier import CLEARER, ITERATIONS
+from estimator.smoothing.images.earlier import CLEARER
 from estimator.smoothing.images.flips import Flip
-from estimator.smoothing.images.otherwise import is_law
 from estimator.smoothing.images.parts import Parts
+from estimator.smoothing.images.reached import SOON, reached
 from estimator.smoothing.images.tried import Asked, Begun, Led, Tried
 from estimator.smoothing.problem.solved import Solved
 
-SOON = 4
-"""Iterations after which an image is given up that is hopeless."""
-HOPELESS, HELD, ALONE = 50.0, 150.0, 10.0
-"""What an image costs more, in log likelihood, that is given up; with all others held where they are; and so
+HELD, ALONE = 150.0, 10.0
+"""What an image costs more, in log likelihood, that is given up with all others held where they are; and so
 where no reading ties him to any of them."""
 SLACKS_M = (1.0, 0.3, 0.1)
 """How far off an estimate may be at first whose way nobody has gone: with a unit turned, or others along."""
@@ -49,7 +47,8 @@ def solutions(asked: Asked, parts: Parts, solved: Solved, begun: Iterable[Begun]
             break
         most -= 1
         alone = len(start.flip.along) + 1 == len(asked.layout.walks)
-        there = _solved(asked, found, led, alone)
+        # With nobody held it has led nowhere yet.
+        there = reached(asked.problem, led.x, _slacks(led.flip) if alone else (), found[0].solved)
         if there is None:
             continue
         new = Tried(there, start.flip)
@@ -109,27 +108,6 @@ def _tied(asked: Asked) -> bool:
     others.remove(own)
     one, other = pairs[:, 2], pairs[:, 3]
     return bool((np.isin(other[one == own], others)).any() or (np.isin(one[other == own], others)).any())
-
-
-def _solved(asked: Asked, found: Sequence[Tried], start: Begun, alone: bool) -> Solved | None:
-    """The solution from an image; None where there is none, or it is hopeless.
-
-    Args:
-        asked: of whom.
-        found: the solutions that are known.
-        start: where to begin.
-        alone: nobody is held: it has led nowhere yet.
-    """
-    problem, slacks = asked.problem, _slacks(start.flip) if alone else ()
-    try:
-        there = problem.solve(start.x, slacks, len(slacks) + SOON)
-        if there.cost > found[0].solved.cost + HOPELESS:
-            return None
-        there = there if there.rests else problem.solve(there.x, iterations=ITERATIONS)
-    except ValueError:
-        # It hangs in the air there.
-        return None
-    return there if is_law(problem.layout, there.x) or not is_law(problem.layout, found[0].solved.x) else None
 
 
 def _slacks(flip: Flip) -> tuple[float, ...]:

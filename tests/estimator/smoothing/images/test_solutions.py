@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.measurements.rssi import Rssi
 from estimator.smoothing.images import solutions
 from estimator.smoothing.images.likeliest import Judged, likeliest
-from estimator.smoothing.images.otherwise import is_law
+from estimator.smoothing.images.reached import is_law, reached
+from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.solved import Solved
 from tests.estimator.smoothing.images.test_among import DBM, EXPONENT, SECONDS, SIGMA_DB, stroll
 from tests.estimator.smoothing.images.test_flips import solved_of
 
@@ -55,16 +58,16 @@ def off_m(judged: Judged, seed: int) -> list[float]:
 
 def told(monkeypatch: pytest.MonkeyPatch, seed: int, alone: float) -> Told:
     """What is told where images that cost so much more, with all others held, are given up."""
-    count, solve = 0, solutions._solved
+    count = 0
 
-    def counted(*asked: object) -> object:
+    def counted(problem: Problem, x: Array, slacks_m: tuple[float, ...], known: Solved) -> Solved | None:
         nonlocal count
         count += 1
-        return solve(*asked)  # type: ignore[arg-type]
+        return reached(problem, x, slacks_m, known)
 
     with monkeypatch.context() as patch:
         patch.setattr(solutions, "ALONE", alone)
-        patch.setattr(solutions, "_solved", counted)
+        patch.setattr(solutions, "reached", counted)
         return Told(likeliest(*solved_of(two(seed))), count)
 
 
