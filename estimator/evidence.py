@@ -7,7 +7,7 @@ import msgspec
 from estimator.estimate import Covariance6, Vector3
 
 EvidenceKind = Literal[
-    "range", "rssi", "bearing", "fix", "height", "stillness", "drop", "displacement", "prior"
+    "range", "rssi", "reach", "bearing", "fix", "height", "stillness", "drop", "displacement", "prior"
 ]
 
 
@@ -19,7 +19,8 @@ class Measurement(msgspec.Struct, frozen=True, kw_only=True):
         t: its epoch, Unix seconds; of a displacement the end of the way.
         a: the node that measured, or that it is about.
         b: the node at the other end; None where there is none.
-        value: what was read, in its own unit: m, dBm, rad; of a displacement its length (m).
+        value: what was read, in its own unit: m, dBm, rad; of a displacement its length (m); of a radio that
+            fell silent or was heard again, how far radios reach (m).
         residual: what was read less what the solution says, in the same unit.
         sigma: standard deviation that it was given, in the same unit.
         weight: probability that it is a good reading and no outlier, 0 to 1.

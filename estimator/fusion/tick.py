@@ -9,17 +9,18 @@ from msgspec.structs import replace
 
 from estimator.fusion import physics
 from estimator.fusion.entering import beginnings, introduce
-from estimator.fusion.memory.state import FusionState
+from estimator.fusion.memory.hearing import Crossing
+from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.fusion.motion.free import move_free
 from estimator.fusion.motion.units import drift_units, was_silent
 from estimator.fusion.motion.way import offset_of
 from estimator.fusion.readings import boots, held
+from estimator.fusion.readings.crossings import hear
 from estimator.fusion.readings.displacements import move_units, returns
 from estimator.fusion.readings.pairs import AnyPair, Pairs
 from estimator.fusion.rows.rows import Single, table_of
 from estimator.fusion.update import update
 from estimator.inertial.samples import AnyFolded, Samples
-from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude, Pressure
 from estimator.measurements.bearing import Bearing
 from estimator.measurements.displacement import Displacement
@@ -31,8 +32,8 @@ from estimator.measurements.retire import Retire
 from estimator.measurements.rssi import Rssi
 
 SAME_EPOCH_S = 1e-6
-PAIRS = (Range, Rssi, Bearing)
-HELD = (Range, Rssi, Bearing, Position, Altitude, Pressure, Drop)
+PAIRS = (Range, Rssi, Bearing, Crossing)
+HELD = (*PAIRS, Position, Altitude, Pressure, Drop)
 
 
 def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded]) -> None:
@@ -46,7 +47,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     state.notices = []
     state.newest_t = max(state.newest_t, until_t)
     displacements: list[Displacement] = []
-    holds: list[AnyReading] = list(state.waiting)
+    holds: list[AnyHeld] = list(state.waiting)
     retired: list[Retire] = []
     for reading in readings:
         if isinstance(reading, HELD):
@@ -59,6 +60,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
             retired.append(reading)
         elif isinstance(reading, Samples):
             displacements += boots.displacements_of(state, reading)
+    holds += hear(state, [r for r in readings if isinstance(r, Rssi)])
     displacements.sort(key=attrgetter("t"))
     holds.sort(key=attrgetter("t"))
     late_t, leaving = until_t - physics.PENDING_S, {r.node for r in retired}
@@ -80,7 +82,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
 def _fold(
     state: FusionState,
     displacements: Sequence[Displacement],
-    holds: Sequence[AnyReading],
+    holds: Sequence[AnyHeld],
     late_t: float,
     unwaited: set[str],
 ) -> None:
@@ -103,8 +105,8 @@ def _fold(
 
 
 def _covered(
-    state: FusionState, readings: Sequence[AnyReading], late_t: float, unwaited: set[str]
-) -> list[AnyReading]:
+    state: FusionState, readings: Sequence[AnyHeld], late_t: float, unwaited: set[str]
+) -> list[AnyHeld]:
     """Readings to be held now; for the others a displacement that covers their epoch may still come.
 
     Args:
@@ -115,8 +117,8 @@ def _covered(
     """
     units = _told_until(state)
     soonest = min(units.values(), default=math.inf)
-    ready: list[AnyReading] = []
-    waiting: list[AnyReading] = []
+    ready: list[AnyHeld] = []
+    waiting: list[AnyHeld] = []
     for reading in readings:
         t = reading.t
         if t <= soonest or t < late_t:
@@ -153,7 +155,7 @@ def flush(state: FusionState) -> None:
             _hold(state, part, [])
 
 
-def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Single]) -> None:
+def _hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single]) -> None:
     """Hold readings against the graph: fixes, heights and drops, then pairs, all solved together.
 
     Args:
@@ -163,7 +165,7 @@ def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Sing
     """
     until: dict[str, float] = {}
     between: list[AnyPair] = []
-    others: list[AnyReading] = []
+    others: list[AnyHeld] = []
     for reading in readings:
         if isinstance(reading, PAIRS):
             between.append(reading)
@@ -196,7 +198,7 @@ def _hold(state: FusionState, readings: Sequence[AnyReading], singles: list[Sing
             state.nodes[name] = replace(node, t=t)
 
 
-def _parts(state: FusionState, readings: Sequence[AnyReading]) -> list[Sequence[AnyReading]]:
+def _parts(state: FusionState, readings: Sequence[AnyHeld]) -> list[Sequence[AnyHeld]]:
     """Readings that are held together: all, but by parts of a tick where nobody knows how someone has moved.
 
     A unit's own way tells where it stood at each epoch that it covers. A velocity that changes tells so for a
@@ -210,8 +212,8 @@ def _parts(state: FusionState, readings: Sequence[AnyReading]) -> list[Sequence[
     soonest = min(units.values(), default=math.inf)
     if not loose and all(reading.t <= soonest for reading in readings):
         return [readings]
-    together: list[AnyReading] = []
-    parts: dict[int, list[AnyReading]] = {}
+    together: list[AnyHeld] = []
+    parts: dict[int, list[AnyHeld]] = {}
     for reading in readings:
         names = names_of(reading)
         if loose.isdisjoint(names) and reading.t <= min(units.get(name, math.inf) for name in names):
@@ -221,7 +223,7 @@ def _parts(state: FusionState, readings: Sequence[AnyReading]) -> list[Sequence[
     return [together, *(parts[k] for k in sorted(parts))]
 
 
-def names_of(reading: AnyFolded) -> tuple[str, ...]:
+def names_of(reading: AnyFolded | Crossing) -> tuple[str, ...]:
     """The nodes that a reading names."""
     if isinstance(reading, PAIRS):
         return reading.a, reading.b

@@ -4,11 +4,13 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
+from estimator.fusion.entering.technologies import REACH
 from estimator.fusion.learned.links import ERROR, KEPT
 from estimator.fusion.learned.noise import near_dbm
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.readings import echoes
+from estimator.fusion.readings.crossings import learn_reach
 from estimator.fusion.rows.descent import INDEFINITE, SOLVED, Found, descend
 from estimator.fusion.rows.rows import CONSTANT, EXTRA, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
 from estimator.graph.dense import Array
@@ -59,11 +61,12 @@ def bend_m(graph: Kirchhoff, moved: Array) -> float:
 
 def _learn(state: FusionState, table: Array, found: Found) -> None:
     """M-step for the noise of each technology: what good readings are off, and how unsure that is itself."""
+    learn_reach(state, table, found)
     sums = np.zeros((len(state.sources), 6))
     outliers = tally(table, found, state.links.table, sums)
     state.count("outlier", outliers)
     for source, told in zip(state.sources, sums.tolist(), strict=True):
-        if told[4] > 0.0:
+        if told[4] > 0.0 and source != REACH:
             state.noise[source] = state.learned(source).with_errors(*told, t=state.newest_t)
 
 

@@ -1,15 +1,19 @@
 """The blocks of technologies in the Kirchhoff matrix: scale and bias of ranges, path loss of powers."""
 
 from estimator.fusion import physics
+from estimator.fusion.learned import reach
 from estimator.fusion.learned.calibration import bias_sigma_m
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.variable import Variable
 
+Numbers = tuple[float, float]
 SENT = "sent"
 """Owner of the path-loss states of radios that tell the power they send with; "" for those that do not."""
 UNTOLD_POWER = "rssi "
 TOLD_POWER = UNTOLD_POWER + SENT
 """Technologies of signals; the owner of their path-loss states stands after the first."""
+REACH = UNTOLD_POWER + "reach"
+"""How far radios reach, as a law of powers of which a crossing is the reading 0 dBm."""
 
 
 def technology_states(state: FusionState, technology: str) -> Variable:
@@ -26,9 +30,15 @@ def path_loss_states(state: FusionState, technology: str) -> Variable:
     """The block of P0 and n of radios that tell the power they send with, or of the others."""
     states = Variable("rssi", technology[len(UNTOLD_POWER) :])
     if states not in state.graph:
-        state.graph.add_node(
-            states,
-            (physics.RSSI_POWER_DBM, physics.RSSI_EXPONENT),
-            (physics.RSSI_POWER_SIGMA_DB, physics.RSSI_EXPONENT_SIGMA),
-        )
+        state.graph.add_node(states, *path_loss_prior(technology))
     return states
+
+
+def path_loss_prior(technology: str) -> tuple[Numbers, Numbers]:
+    """P0 and n beforehand, and their standard deviations."""
+    if technology == REACH:
+        return (reach.REACH_DB, reach.EXPONENT), (reach.REACH_SIGMA_DB, reach.EXPONENT_SIGMA)
+    return (
+        (physics.RSSI_POWER_DBM, physics.RSSI_EXPONENT),
+        (physics.RSSI_POWER_SIGMA_DB, physics.RSSI_EXPONENT_SIGMA),
+    )

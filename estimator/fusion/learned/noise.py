@@ -24,6 +24,7 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
         seen: readings that the share of outliers is learned from.
         odd: how many of them were outliers.
         t: until when it has been learned (s); None: it is assumed.
+        least: of `factor`.
     """
 
     count: float = physics.NOISE_PRIOR
@@ -33,14 +34,15 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
     seen: float = 0.0
     odd: float = 0.0
     t: float | None = None
+    least: float = 0.3
 
     @property
     def factor(self) -> float:
         """Learned standard deviation over the claimed or assumed one.
 
-        A scatter below a third tells nothing of what is alike in many readings: antennas, multipath.
+        Of most a scatter below a third tells nothing of what is alike in many readings: antennas, multipath.
         """
-        return min(max(math.sqrt(max(self.squares, 0.0) / self.count), 0.3), 2.0)
+        return min(max(math.sqrt(max(self.squares, 0.0) / self.count), self.least), 2.0)
 
     @property
     def shared(self) -> float:

@@ -5,6 +5,8 @@ import msgspec
 from estimator.fusion.learned.calibration import Calibration
 from estimator.fusion.learned.links import Links
 from estimator.fusion.learned.noise import LearnedNoise
+from estimator.fusion.learned.reach import Reach
+from estimator.fusion.memory.hearing import Crossing, Listener
 from estimator.fusion.memory.ledger import COLUMNS
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.prior import Key, Prior
@@ -33,7 +35,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     arrays: tuple[ArrayRecord, ArrayRecord, ArrayRecord]
     nodes: list[NodeState]
     sightings: dict[str, int]
-    waiting: tuple[AnyReading, ...]
+    waiting: tuple[AnyReading | Crossing, ...]
     noise: dict[str, LearnedNoise]
     links: tuple[list[tuple[str, str, str]], ArrayRecord]
     reference_pa: float | None
@@ -54,6 +56,8 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     calibrations: dict[str, Calibration]
     bent_m: float
     navigations: dict[str, NavigationRecord]
+    reach: Reach
+    listeners: dict[str, Listener]
 
 
 def record_of(state: FusionState) -> FusionRecord:
@@ -93,6 +97,8 @@ def record_of(state: FusionState) -> FusionRecord:
         dict(state.calibrations),
         state.bent_m,
         {name: navigation_record_of(known) for name, known in state.navigations.items()},
+        state.reach,
+        dict(state.listeners),
     )
 
 
@@ -115,6 +121,7 @@ def state_of(record: FusionRecord) -> FusionState:
     state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
     state.calibrations, state.bent_m = record.calibrations, record.bent_m
     state.navigations = {name: navigation_of(known) for name, known in record.navigations.items()}
+    state.reach, state.listeners = record.reach, record.listeners
     if record.prior is not None:
         matrix, vector, reference = (unpack(a) for a in record.prior.arrays)
         state.prior = Prior(tuple(record.prior.keys), matrix, vector, reference, record.prior.epochs)

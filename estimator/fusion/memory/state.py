@@ -11,6 +11,8 @@ from estimator.fusion.learned.calibration import Calibration, narrow_sigma, scal
 from estimator.fusion.learned.gyros import bias_sigma_radps
 from estimator.fusion.learned.links import Links
 from estimator.fusion.learned.noise import LearnedNoise
+from estimator.fusion.learned.reach import Reach
+from estimator.fusion.memory.hearing import Crossing, Listener
 from estimator.fusion.memory.ledger import RANGE, Ledger
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.prior import Prior
@@ -21,6 +23,7 @@ from estimator.inertial.resting import RESTED_RADPS
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Role
 
+AnyHeld = AnyReading | Crossing
 Count = Literal["fused", "not_fused", "outlier"]
 
 
@@ -52,6 +55,8 @@ class FusionState:
         prior: what is known from before the window.
         navigations: of the boots whose units report raw samples, by node.
         calibrations: what is thought of the scale of each ranging technology that reaches odometry.
+        reach: how far radios reach.
+        listeners: what each radio has been hearing.
         ledger: what has been fused, as tables.
         owners: the node of each number in the ledger.
         sources: the technologies of the ledger's readings.
@@ -63,7 +68,7 @@ class FusionState:
         self.graph = Kirchhoff()
         self.nodes: dict[str, NodeState] = {}
         self.sightings: dict[str, int] = {}
-        self.waiting: tuple[AnyReading, ...] = ()
+        self.waiting: tuple[AnyHeld, ...] = ()
         self.noise: dict[str, LearnedNoise] = {}
         self.links = Links()
         self.reference_pa: float | None = None
@@ -81,6 +86,8 @@ class FusionState:
         self.prior: Prior | None = None
         self.navigations: dict[str, Navigation] = {}
         self.calibrations: dict[str, Calibration] = {}
+        self.reach = Reach()
+        self.listeners: dict[str, Listener] = {}
         self.ledger = Ledger()
         self.owners: tuple[str, ...] = ()
         self.sources: tuple[str, ...] = ()
@@ -94,6 +101,7 @@ class FusionState:
         twin.nodes, twin.links, twin.sightings = dict(self.nodes), self.links.copy(), dict(self.sightings)
         twin.noise, twin.calibrations = dict(self.noise), dict(self.calibrations)
         twin.counts, twin.said, twin.tried = dict(self.counts), dict(self.said), dict(self.tried)
+        twin.listeners = dict(self.listeners)
         twin.navigations, twin.notices = dict(self.navigations), []
         return twin
 

@@ -7,12 +7,15 @@ import numpy as np
 
 from estimator.fusion import physics
 from estimator.fusion.entering.technologies import (
+    REACH,
     TOLD_POWER,
     UNTOLD_POWER,
     path_loss_states,
     technology_states,
 )
+from estimator.fusion.learned import reach
 from estimator.fusion.learned.calibration import Calibration
+from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -25,7 +28,7 @@ from estimator.measurements.node import MOVING_ROLES
 from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
 
-AnyPair = Range | Rssi | Bearing
+AnyPair = Range | Rssi | Bearing | Crossing
 
 
 class Named(NamedTuple):
@@ -73,7 +76,8 @@ class Pairs:
             a = named.get(name_a) or self._name(name_a, t)
             b = named.get(name_b) or self._name(name_b, t)
             between = a.decided and b.decided
-            if not between and not self._sights(a.node, b.node, reading):
+            crossing = isinstance(reading, Crossing)
+            if not between and (crossing or not self._sights(a.node, b.node, reading)):
                 continue
             if between and a.fixed and b.fixed:
                 state.count("not_fused")
@@ -83,6 +87,8 @@ class Pairs:
                 kind, source, value, sigma = RSSI, UNTOLD_POWER, reading.dbm, physics.RSSI_SIGMA_DB
                 if reading.tx_dbm is not None:
                     source, constant = TOLD_POWER, reading.tx_dbm
+            elif isinstance(reading, Crossing):
+                kind, source, value, sigma = RSSI, REACH, 0.0, reach.NOMINAL_DB
             elif isinstance(reading, Range):
                 kind, source, value = RANGE, reading.technology or "unnamed", reading.range_m
                 usual = physics.RANGE_SIGMA_M.get(source, physics.RANGE_SIGMA_OTHER_M)
@@ -99,7 +105,7 @@ class Pairs:
                 technology = self._technology(kind, source, between)
             link = link_of(source, name_a, name_b)
             told += (t, value, sigma, constant, technology, link, a.number, b.number)
-            if between:
+            if between and not crossing:
                 fused += 1
                 fused_t[name_a] = fused_t[name_b] = t
         state.count("fused", fused)

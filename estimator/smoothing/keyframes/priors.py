@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.fusion import physics
+from estimator.fusion.entering.technologies import path_loss_prior
 from estimator.fusion.learned.calibration import bias_sigma_m
 from estimator.fusion.memory.prior import Key
 from estimator.graph.dense import Array, Indices
@@ -77,6 +78,7 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
             mean += [0.0, 0.0]
             known_by += [state.range_scale_sigma(name) ** -2, bias_sigma_m(name) ** -2]
         else:
-            mean += [physics.RSSI_POWER_DBM, physics.RSSI_EXPONENT]
-            known_by += [physics.RSSI_POWER_SIGMA_DB**-2, physics.RSSI_EXPONENT_SIGMA**-2]
+            told, sigma = path_loss_prior(state.sources[key[1]])
+            mean += told
+            known_by += [sigma[0] ** -2, sigma[1] ** -2]
     return Priors(np.array(at, dtype=np.intp), np.array(mean), np.array(known_by, dtype=np.float64))

@@ -33,6 +33,7 @@ test("a measurement is called by what it is, and by the node at its other end", 
   expect(what({ a: "bc1", b: "ff1" })).toBe("Range to BC1");
   expect(what({ kind: "bearing", a: "uav1", b: "ff1" })).toBe("Bearing from UAV1");
   expect(what({ kind: "rssi", a: "ff2", b: "ff1" })).toBe("Radio signal with FF2");
+  expect(what({ kind: "reach", a: "ff1", b: "bc1" })).toBe("Edge of reach of BC1");
   expect(what({ kind: "drop", a: "bc4", b: "ff1" })).toBe("Dropped BC4 here");
 });
 
@@ -53,6 +54,7 @@ test.each([
   [{ residual: 0.04 }, "fits"],
   [{ kind: "rssi", residual: -7.6 }, "8 dB too weak"],
   [{ kind: "rssi", residual: 3 }, "3 dB too strong"],
+  [{ kind: "reach", residual: 1.2 }, "1.2 m too near"],
   [{ kind: "height", residual: 2 }, "2.0 m too high"],
   [{ kind: "bearing", residual: -0.2 }, "11° off"],
   [{ kind: "displacement", residual: -0.3 }, "0.3 m off"],

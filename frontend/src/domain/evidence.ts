@@ -11,6 +11,7 @@ const LEAST_SHARE = 0.01;
 const ABOUT_ONE: Record<Measurement["kind"], string> = {
   range: "Range",
   rssi: "Radio signal",
+  reach: "Edge of reach",
   bearing: "Bearing",
   fix: "Position fix",
   height: "Height",
@@ -73,6 +74,8 @@ function whatWords(one: Measurement, node: string, name: (node: string) => strin
       return one.a === node ? `${word} to ${other}` : `${word} from ${other}`;
     case "rssi":
       return `${word} with ${other}`;
+    case "reach":
+      return `${word} of ${other}`;
     case "drop":
       return `Dropped ${other} here`;
     default:
@@ -85,6 +88,8 @@ function offWords({ kind, residual }: Measurement): string {
   switch (kind) {
     case "range":
       return signed(metres(Math.abs(residual)), residual, "too long", "too short");
+    case "reach":
+      return signed(metres(Math.abs(residual)), residual, "too near", "too far");
     case "height":
       return signed(metres(Math.abs(residual)), residual, "too high", "too low");
     case "rssi":

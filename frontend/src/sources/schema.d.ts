@@ -1178,7 +1178,8 @@ export interface components {
          *             t: its epoch, Unix seconds; of a displacement the end of the way.
          *             a: the node that measured, or that it is about.
          *             b: the node at the other end; None where there is none.
-         *             value: what was read, in its own unit: m, dBm, rad; of a displacement its length (m).
+         *             value: what was read, in its own unit: m, dBm, rad; of a displacement its length (m); of a radio that
+         *                 fell silent or was heard again, how far radios reach (m).
          *             residual: what was read less what the solution says, in the same unit.
          *             sigma: standard deviation that it was given, in the same unit.
          *             weight: probability that it is a good reading and no outlier, 0 to 1.
@@ -1187,7 +1188,7 @@ export interface components {
          */
         Measurement: {
             /** @enum {unknown} */
-            kind: "bearing" | "displacement" | "drop" | "fix" | "height" | "prior" | "range" | "rssi" | "stillness";
+            kind: "bearing" | "displacement" | "drop" | "fix" | "height" | "prior" | "range" | "reach" | "rssi" | "stillness";
             t: number;
             a: string;
             /** @default null */

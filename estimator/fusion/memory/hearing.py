@@ -1,0 +1,101 @@
+"""Who has been hearing whom: where a radio falls silent or is heard again, somebody crosses its reach."""
+
+from collections.abc import Mapping
+
+import msgspec
+
+from estimator.measurements.base import PairReading
+
+STREAK = 3
+"""Occasions in a row at which a radio must have been heard before it can fall silent."""
+GAP_S = 1.5
+"""Between occasions farther apart nobody knows when the reach was crossed."""
+REMEMBERED = 3
+
+
+class Crossing(PairReading, tag="crossing", frozen=True):
+    """`a` came into the reach of `b`, or left it: `t` is in the middle between two occasions."""
+
+
+class Heard(msgspec.Struct, frozen=True, array_like=True):
+    """One radio as another hears it.
+
+    Attributes:
+        t: when it was heard last (s).
+        heard: occasions in a row at which it was heard, until it fell silent.
+        silent: occasions in a row since.
+    """
+
+    t: float
+    heard: int
+    silent: int
+
+
+class Listener(msgspec.Struct, frozen=True, array_like=True):
+    """What a radio has been hearing; an occasion is a second in which it hears anything.
+
+    Attributes:
+        occasions: epochs of the last ones that are over, oldest first (s).
+        newest: whom it hears at the newest one, and when (s): the rest of it may still be under way.
+        radios: those that it had heard until then.
+    """
+
+    occasions: tuple[float, ...] = ()
+    newest: dict[str, float] = {}
+    radios: dict[str, Heard] = {}
+
+
+class Occasion(msgspec.Struct, frozen=True):
+    """What an occasion tells once it is over.
+
+    Attributes:
+        listener: what the radio has been hearing, the next occasion begun.
+        crossings: of reaches.
+        heard: packets from radios that were in reach before.
+        lost: how many more seem to have been lost.
+    """
+
+    listener: Listener
+    crossings: list[Crossing]
+    heard: int
+    lost: int
+
+
+def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int) -> Occasion:
+    """Close the newest occasion of a listener, and begin the next one.
+
+    Args:
+        name: of the listener.
+        listener: what it has been hearing.
+        now: whom it hears at the next one, and when (s).
+        silent: occasions in a row at which a radio in reach is not missed by chance.
+    """
+    before, radios = listener.newest, dict(listener.radios)
+    if not before:
+        return Occasion(Listener((), dict(now), radios), [], 0, 0)
+    occasions = (*listener.occasions, max(before.values()))[-REMEMBERED:]
+    crossings: list[Crossing] = []
+    heard = lost = 0
+
+    def crossed(since_t: float, until_t: float, other: str) -> None:
+        if until_t - since_t <= GAP_S:
+            crossings.append(Crossing(t=0.5 * (since_t + until_t), a=name, b=other))
+
+    for other, t in before.items():
+        known = radios.get(other)
+        if known is None or known.silent >= silent:
+            radios[other] = Heard(t, 1, 0)
+            if known is not None and len(occasions) > 1:
+                crossed(occasions[-2], t, other)
+        else:
+            heard += 1
+            radios[other] = Heard(t, known.heard + 1, 0)
+    for other, known in listener.radios.items():
+        if other not in before:
+            missed = known.silent + 1
+            radios[other] = Heard(known.t, known.heard, missed)
+            # Until it is thought to be out of reach, what is not heard of it counts as lost.
+            lost += (missed < silent) - (silent - 1) * (missed == silent)
+            if missed == silent and known.heard >= STREAK and len(occasions) >= silent:
+                crossed(known.t, occasions[-silent], other)
+    return Occasion(Listener(occasions, dict(now), radios), crossings, heard, lost)
