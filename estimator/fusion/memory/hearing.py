@@ -10,7 +10,7 @@ STREAK = 3
 """Occasions in a row at which a radio must have been heard before it can fall silent."""
 GAP_S = 1.5
 """Between occasions farther apart nobody knows when the reach was crossed."""
-REMEMBERED = 3
+REMEMBERED = 2
 
 
 class Crossing(PairReading, tag="crossing", frozen=True):
@@ -23,7 +23,7 @@ class Heard(msgspec.Struct, frozen=True, array_like=True):
     Attributes:
         t: when it was heard last (s).
         heard: occasions in a row at which it was heard, until it fell silent.
-        silent: occasions in a row since.
+        silent: occasions in a row since, until it is out of reach.
     """
 
     t: float
@@ -46,10 +46,10 @@ class Listener(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Occasion(msgspec.Struct, frozen=True):
-    """What an occasion tells once it is over.
+    """What an occasion tells once it is over, and the next one that has begun.
 
     Attributes:
-        listener: what the radio has been hearing, the next occasion begun.
+        listener: what the radio has been hearing.
         crossings: of reaches.
         heard: packets from radios that were in reach before.
         lost: how many more seem to have been lost.
@@ -64,11 +64,14 @@ class Occasion(msgspec.Struct, frozen=True):
 def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int) -> Occasion:
     """Close the newest occasion of a listener, and begin the next one.
 
+    Who is heard again is so at once. Who is not may still come, in a later post, until the occasion is over.
+
     Args:
         name: of the listener.
         listener: what it has been hearing.
         now: whom it hears at the next one, and when (s).
-        silent: occasions in a row at which a radio in reach is not missed by chance.
+        silent: occasions in a row at which a radio in reach is hardly missed by chance: where it is not heard
+            at the next one either, it is out of reach.
     """
     before, radios = listener.newest, dict(listener.radios)
     if not before:
@@ -85,17 +88,24 @@ def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int)
         known = radios.get(other)
         if known is None or known.silent >= silent:
             radios[other] = Heard(t, 1, 0)
-            if known is not None and len(occasions) > 1:
-                crossed(occasions[-2], t, other)
         else:
             heard += 1
             radios[other] = Heard(t, known.heard + 1, 0)
     for other, known in listener.radios.items():
-        if other not in before:
-            missed = known.silent + 1
-            radios[other] = Heard(known.t, known.heard, missed)
-            # Until it is thought to be out of reach, what is not heard of it counts as lost.
-            lost += (missed < silent) - (silent - 1) * (missed == silent)
-            if missed == silent and known.heard >= STREAK and len(occasions) >= silent:
+        if other in before:
+            continue
+        missed, again = known.silent + 1, other in now
+        if missed > silent:
+            # It is out of reach: of the many that are nothing changes until they are heard again.
+            if again:
+                crossed(occasions[-1], now[other], other)
+            continue
+        # Until it is thought to be out of reach, what is not heard of it counts as lost.
+        if missed < silent or again:
+            lost += 1
+        else:
+            lost -= silent - 1
+            if known.heard >= STREAK and len(occasions) >= silent:
                 crossed(known.t, occasions[-silent], other)
+        radios[other] = Heard(known.t, known.heard, 0 if missed == silent and again else missed)
     return Occasion(Listener(occasions, dict(now), radios), crossings, heard, lost)

@@ -31,7 +31,11 @@ def test_a_radio_that_is_heard_again_is_come_back_to() -> None:
     assert crossings == [Crossing(t=2.5, a="ff", b="b"), Crossing(t=5.5, a="ff", b="b")]
 
 
-def test_nothing_is_made_of_a_second_before_the_next_one_has_begun() -> None:
+def test_that_a_radio_is_heard_again_is_known_at_once() -> None:
+    assert heard(["ab", "ab", "ab", "a", "a", "a", "ab"])[0][-1] == Crossing(t=5.5, a="ff", b="b")
+
+
+def test_nothing_is_made_of_the_silence_of_a_second_before_the_next_one_has_begun() -> None:
     """A gateway may post the rest of it later."""
     assert heard(["ab", "ab", "ab", "a"])[0] == []
 
@@ -41,6 +45,11 @@ def test_where_packets_are_lost_one_second_of_silence_is_a_lost_packet() -> None
     assert crossings == []
     # Of five seconds that are over nine packets came; the first of each radio tells nothing of its losses.
     assert (packets, lost) == (7, 1)
+
+
+def test_a_radio_that_is_heard_again_at_once_was_never_out_of_reach() -> None:
+    assert heard(["ab", "ab", "ab", "a", "ab", "ab"]) == ([], 7, 1)
+    assert heard(["ab", "ab", "ab", "a", "a", "ab", "ab"], silent=2) == ([], 8, 2)
 
 
 def test_two_seconds_of_silence_are_a_reach_left_when_the_first_began_and_nothing_is_lost() -> None:
