@@ -210,6 +210,20 @@ class Commander(MapSeen, LayoutSeen, OthersSeen):
         return marks
 
     @property
+    def events_either_way(self) -> tuple[bool, bool]:
+        """Whether the timeline leads to an event before, and to one after."""
+        return self._event_button("Previous event").is_enabled(), self._event_button(
+            "Next event"
+        ).is_enabled()
+
+    def goes_to_the_next_event(self) -> None:
+        """Press the arrow to the next mark on the timeline."""
+        self._event_button("Next event").click()
+
+    def _event_button(self, name: str) -> Locator:
+        return self.page.get_by_test_id("timeline").get_by_role("button", name=name)
+
+    @property
     def trouble(self) -> str:
         """What the top bar says went wrong; nothing if nothing did."""
         said = self.page.locator("header [role=status]")

@@ -86,6 +86,24 @@ def test_a_mayday_stands_before_a_commander_who_watches_the_past(
     assert commander.mode == "REPLAY"
 
 
+def test_arrows_lead_from_event_to_event_and_nowhere_else(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
+    heard(post, incident, step(T0 + 5, "walker", [1, 0, 0]), alarm(T0 + 5, "walker"))
+    heard(post, incident, step(T0 + 9, "walker", [1, 0, 0]))
+    recorded(post, incident, T0 + 9)
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.event_marks == ["MAYDAY WALKER"])
+    eventually(lambda: commander.events_either_way == (True, False))
+    commander.scrubs_to(T0 + 2)
+    eventually(lambda: commander.mode == "REPLAY" and commander.events_either_way == (False, True))
+    before = commander.clock
+    commander.goes_to_the_next_event()
+    eventually(lambda: commander.clock > before and commander.events_either_way == (False, False))
+
+
 def test_an_alarm_says_where_the_responder_is_now_also_before_who_watches_the_past(
     server: Server, post: Post, commander: Commander
 ) -> None:
