@@ -5,7 +5,7 @@ from numba import njit
 
 from estimator.fusion import physics
 from estimator.fusion.entering.technologies import REACH
-from estimator.fusion.learned.links import ERROR, KEPT
+from estimator.fusion.learned.links import ERROR, KEPT, SAME_PLACE
 from estimator.fusion.learned.noise import near_dbm
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.memory.state import FusionState
@@ -18,7 +18,6 @@ from estimator.graph.kirchhoff import Kirchhoff
 
 LEVER_M = 20.0
 """A heading's error at the far end of a room's way."""
-SAME_PLACE = 0.5
 ITERATIONS = 6
 
 

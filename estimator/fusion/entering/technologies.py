@@ -28,10 +28,15 @@ def technology_states(state: FusionState, technology: str) -> Variable:
 
 def path_loss_states(state: FusionState, technology: str) -> Variable:
     """The block of P0 and n of radios that tell the power they send with, or of the others."""
-    states = Variable("rssi", technology[len(UNTOLD_POWER) :])
+    states = path_loss_variable(technology)
     if states not in state.graph:
         state.graph.add_node(states, *path_loss_prior(technology))
     return states
+
+
+def path_loss_variable(technology: str) -> Variable:
+    """The key of the block of a technology of signals."""
+    return Variable("rssi", technology[len(UNTOLD_POWER) :])
 
 
 def path_loss_prior(technology: str) -> tuple[Numbers, Numbers]:

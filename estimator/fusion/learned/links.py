@@ -18,6 +18,8 @@ NEW = (-math.inf, 0.0, 0.0, 0.0, math.nan, 0.0, 0.0, 0.0, 0.0)
 """Nothing is left of a reading that was made an eternity ago."""
 NONE: Array = np.zeros((0, len(NEW)))
 SPARE = 16
+SAME_PLACE = 0.5
+"""A reading that keeps more of the error of the one before was made where that was made."""
 
 
 class Links:

@@ -16,6 +16,7 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
+from estimator.graph.dense import Array
 from estimator.measurements.rssi import DB_PER_NEPER
 
 EXPONENT = 2.5
@@ -27,6 +28,7 @@ SPREADS_DB2 = (np.geomspace(0.02, 0.6, 9) * EXPONENT * DB_PER_NEPER) ** 2
 """Variances that stand for all: reaches that differ by 2 % to 60 %. Sharper than half of a step's length at
 25 m none can be told."""
 NOMINAL_DB = 3.0
+"""The unit in which the noise of a crossing is written down before it is learned."""
 SHARED = 0.9
 """Share of that variance that crossings of one reach at one place have in common."""
 OUTLIERS, OUTLIER_DB2 = 0.05, 400.0
@@ -69,7 +71,7 @@ class Reach(msgspec.Struct, frozen=True, array_like=True):
         return math.exp(0.5 * float((weight * np.log(SPREADS_DB2)).sum() / weight.sum()))
 
     @property
-    def _logs(self) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    def _logs(self) -> Array:
         return np.array(self.logs or (0.0,) * len(SPREADS_DB2))
 
     def with_packets(self, heard: int, lost: int) -> Self:

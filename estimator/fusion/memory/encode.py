@@ -6,17 +6,16 @@ from estimator.fusion.learned.calibration import Calibration
 from estimator.fusion.learned.links import Links
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.learned.reach import Reach
-from estimator.fusion.memory.hearing import Crossing, Listener
+from estimator.fusion.memory.hearing import Listener
 from estimator.fusion.memory.ledger import COLUMNS
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.prior import Key, Prior
-from estimator.fusion.memory.state import FusionState
+from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.record import ArrayRecord, pack, unpack
 from estimator.graph.variable import Variable
 from estimator.inertial.record import NavigationRecord, navigation_of
 from estimator.inertial.record import record_of as navigation_record_of
-from estimator.measurements import AnyReading
 
 
 class PriorRecord(msgspec.Struct, frozen=True, array_like=True):
@@ -35,7 +34,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     arrays: tuple[ArrayRecord, ArrayRecord, ArrayRecord]
     nodes: list[NodeState]
     sightings: dict[str, int]
-    waiting: tuple[AnyReading | Crossing, ...]
+    waiting: tuple[AnyHeld, ...]
     noise: dict[str, LearnedNoise]
     links: tuple[list[tuple[str, str, str]], ArrayRecord]
     reference_pa: float | None

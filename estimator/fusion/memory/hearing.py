@@ -4,13 +4,13 @@ from collections.abc import Mapping
 
 import msgspec
 
+from estimator.fusion.learned.reach import MOST_SILENT
 from estimator.measurements.base import PairReading
 
 STREAK = 3
 """Occasions in a row at which a radio must have been heard before it can fall silent."""
 GAP_S = 1.5
 """Between occasions farther apart nobody knows when the reach was crossed."""
-REMEMBERED = 2
 
 
 class Crossing(PairReading, tag="crossing", frozen=True):
@@ -76,7 +76,7 @@ def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int)
     before, radios = listener.newest, dict(listener.radios)
     if not before:
         return Occasion(Listener((), dict(now), radios), [], 0, 0)
-    occasions = (*listener.occasions, max(before.values()))[-REMEMBERED:]
+    occasions = (*listener.occasions, max(before.values()))[-MOST_SILENT:]
     crossings: list[Crossing] = []
     heard = lost = 0
 

@@ -1,28 +1,24 @@
 """Where somebody crosses a radio's reach, from what is heard at all, and what that tells of reaches."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.fusion.entering.technologies import REACH, UNTOLD_POWER
+from estimator.fusion.entering.technologies import REACH, path_loss_variable
 from estimator.fusion.learned import reach
-from estimator.fusion.learned.links import KEPT
+from estimator.fusion.learned.links import KEPT, SAME_PLACE
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.memory.hearing import Crossing, Listener, listen
 from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.physics import TICK_S
+from estimator.fusion.order import tick_of
 from estimator.fusion.rows.descent import Found
 from estimator.fusion.rows.rows import EXTRA, KIND, LINK, SIGMA
 from estimator.graph.dense import Array
-from estimator.graph.variable import Variable
 from estimator.measurements.rssi import Rssi
 
-STATES = Variable("rssi", REACH[len(UNTOLD_POWER) :])
 TELLING = ("unit", "static", "fixed")
-SAME = 0.5
-"""A crossing that shares more of its error with the one before tells nothing new of how reaches differ."""
+"""How those move of whom it is known where they were between two seconds."""
 
 
 def hear(state: FusionState, readings: Sequence[Rssi]) -> list[Crossing]:
@@ -37,8 +33,7 @@ def hear(state: FusionState, readings: Sequence[Rssi]) -> list[Crossing]:
     """
     heard: dict[tuple[int, str], dict[str, float]] = {}
     for reading in readings:
-        second = math.ceil(reading.t / TICK_S - 1e-6)
-        heard.setdefault((second, reading.a), {})[reading.b] = reading.t
+        heard.setdefault((tick_of(reading.t), reading.a), {})[reading.b] = reading.t
     if not heard:
         return []
     crossings: list[Crossing] = []
@@ -69,7 +64,7 @@ def learn_reach(state: FusionState, table: Array, found: Found) -> None:
         table: of m readings, see `rows.Row`.
         found: what they have led to.
     """
-    start = state.graph.starts.get(STATES)
+    start = state.graph.starts.get(path_loss_variable(REACH))
     if start is None:
         return
     # Through a floor one tells nothing of it: it has no link there.
@@ -77,7 +72,8 @@ def learn_reach(state: FusionState, table: Array, found: Found) -> None:
     if not crossed.any():
         return
     for r in np.flatnonzero(crossed).tolist():
-        if state.links.table[int(table[r, LINK]), KEPT] < SAME:
+        # What was crossed at the same place just before tells nothing new of how reaches differ.
+        if state.links.table[int(table[r, LINK]), KEPT] < SAME_PLACE:
             predicted, variance = float(found.predicted[r]), float(table[r, SIGMA]) ** 2
             # What it was off by before it was followed, as far as it was believed.
             off_db = float(found.residual[r]) * (1.0 + float(found.good[r]) * predicted / variance)

@@ -89,12 +89,16 @@ def explain(
         "mk,mkc->mc", solved.linear.jacobian, np.where(flat[..., None] >= 0, across[flat], 0.0)
     )
     power = solved.weighted.information * (carried**2).sum(axis=1) / total
-    listed = [_row(layout, rows, solved, i, float(power[i])) for i in np.argsort(-power)[:HELD_MAX].tolist()]
+    listed = [
+        _row(state, rows, solved, flat, i, float(power[i])) for i in np.argsort(-power)[:HELD_MAX].tolist()
+    ]
     listed += _walked(layout, solved, across, total)
     held = sorted(_joined(listed), key=lambda m: -m.share)[:HELD_MAX]
     held = [m for m in held if m.share > 1e-4]
     bad = np.flatnonzero((solved.weighted.good < 0.5) & (rows.t > epoch - RECENT_S))
-    near = [_row(layout, rows, solved, i, float(power[i])) for i in bad[np.argsort(-rows.t[bad])].tolist()]
+    near = [
+        _row(state, rows, solved, flat, i, float(power[i])) for i in bad[np.argsort(-rows.t[bad])].tolist()
+    ]
     rejected = [m for m in near if name in (m.a, m.b)][:REJECTED_MAX]
     return Evidence(
         node=name,
@@ -114,8 +118,7 @@ def _flat(layout: Layout, rows: Rows) -> Array:
     return np.where(rows.columns < 0, -1, np.where(rows.columns < layout.width, keyframe, border))
 
 
-def _row(layout: Layout, rows: Rows, solved: Solved, i: int, share: float) -> Measurement:
-    state = layout.state
+def _row(state: FusionState, rows: Rows, solved: Solved, flat: Array, i: int, share: float) -> Measurement:
     owners, m, n = state.owners, len(rows.pairs), len(rows.singles)
     b: str | None = None
     kind: EvidenceKind
@@ -130,8 +133,8 @@ def _row(layout: Layout, rows: Rows, solved: Solved, i: int, share: float) -> Me
         kind, a, b, value = "drop", owners[int(drop[2])], owners[int(drop[1])], 0.0
     residual, sigma = float(solved.linear.residual[i] + rows.shift[i]), float(rows.sigma[i])
     if kind == "rssi" and state.sources[int(rows.source[i])] == REACH:
-        kind, level = "reach", int(rows.columns[i, -2]) + (layout.length - 1) * layout.width
-        value, residual, sigma = in_metres(float(solved.x[level]), residual, sigma)
+        kind = "reach"
+        value, residual, sigma = in_metres(float(solved.x[flat[i, -2]]), residual, sigma)
     return Measurement(
         kind=kind,
         t=float(rows.t[i]),
