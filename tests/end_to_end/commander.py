@@ -117,7 +117,7 @@ class Commander(MapSeen, LayoutSeen, OthersSeen):
 
     @property
     def counts(self) -> str:
-        """How many are inside, live, stale, lost, as the top bar says it."""
+        """How many responders there are, live, stale, lost, as the top bar says it."""
         return " ".join(self.page.get_by_test_id("counts").inner_text().split())
 
     @property

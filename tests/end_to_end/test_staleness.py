@@ -18,7 +18,7 @@ def test_a_responder_who_falls_silent_turns_stale_then_lost_in_word_and_shape(
 
     commander.sees("QUIET", "Live")
     commander.turns_trails_off()
-    assert commander.counts == "1 inside 1 live 0 stale 0 lost"
+    assert commander.counts == "1 responder 1 live 0 stale 0 lost"
     eventually(lambda: commander.shape(FIRST_CREW) == "round", within_s=2)
 
     commander.sees("QUIET", "Stale")
@@ -28,7 +28,7 @@ def test_a_responder_who_falls_silent_turns_stale_then_lost_in_word_and_shape(
     commander.sees("QUIET", "Lost")
     assert 4 <= commander.board()["QUIET"].age_s <= 5
     eventually(lambda: commander.shape(FIRST_CREW) == "square", within_s=2)
-    assert commander.counts == "1 inside 0 live 0 stale 1 lost"
+    assert commander.counts == "1 responder 0 live 0 stale 1 lost"
 
     heard(post, incident, step(time.time(), "quiet", [0, 0, 0]))
     commander.sees("QUIET", "Live", within_s=2)

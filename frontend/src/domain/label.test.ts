@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { type Labelled, labelLines } from "./label";
+import { type Labelled, labelWords } from "./label";
 import { aNode, anAlarm, NOON, STOREYS } from "./samples";
 import { DEFAULT_LIMITS, whileUnheard } from "./staleness";
 
@@ -13,31 +13,37 @@ const ALL: Labelled = {
 const upstairs = aNode({ level: 1, level_p: 0.99 });
 
 test("a label says who, how old the fix is, and on which storey", () => {
-  expect(labelLines(upstairs, ALL)).toEqual(["E7-1", "3 s · Level 1"]);
+  expect(labelWords(upstairs, ALL).whole).toEqual(["E7-1", "3 s · Level 1"]);
+});
+
+test("where there is no room it says who and how old, and a storey only if that is not sure", () => {
+  expect(labelWords(upstairs, ALL).short).toBe("E7-1 · 3 s");
+  expect(labelWords(aNode({ level: 1, level_p: 0.64 }), ALL).short).toBe("E7-1 · 3 s · Level 1, 64 %");
+  expect(labelWords(upstairs, { ...ALL, now: NOON + 20 }).short).toBe("E7-1 · STALE 20 s");
 });
 
 test("a storey that is not sure is said with its probability, also where that storey is shown", () => {
   const unsure = aNode({ level: 1, level_p: 0.64 });
-  expect(labelLines(unsure, ALL)[1]).toBe("3 s · Level 1, 64 %");
-  expect(labelLines(unsure, { ...ALL, level: 1 })[1]).toBe("3 s · Level 1, 64 %");
+  expect(labelWords(unsure, ALL).whole[1]).toBe("3 s · Level 1, 64 %");
+  expect(labelWords(unsure, { ...ALL, level: 1 }).whole[1]).toBe("3 s · Level 1, 64 %");
 });
 
 test("whoever is on the storey that is shown needs no word on it", () => {
-  expect(labelLines(upstairs, { ...ALL, level: 1 })[1]).toBe("3 s");
+  expect(labelWords(upstairs, { ...ALL, level: 1 }).whole[1]).toBe("3 s");
 });
 
 test("who is in alarm on another storey than the one shown is labelled with his own", () => {
   const alarms = new Map([["ff1", anAlarm()]]);
-  expect(labelLines(upstairs, { ...ALL, level: 0, alarms })).toEqual(["E7-1 MAYDAY", "3 s · Level 1"]);
+  expect(labelWords(upstairs, { ...ALL, level: 0, alarms }).whole).toEqual(["E7-1 MAYDAY", "3 s · Level 1"]);
 });
 
 test("what flies is on no storey", () => {
-  expect(labelLines(aNode({ role: "uav", level: 1 }), ALL)[1]).toBe("3 s");
+  expect(labelWords(aNode({ role: "uav", level: 1 }), ALL).whole[1]).toBe("3 s");
 });
 
 test("what is no longer live says so, and nothing is while the server is not heard", () => {
-  expect(labelLines(upstairs, { ...ALL, now: NOON + 20 })[1]).toBe("STALE 20 s · Level 1");
-  expect(labelLines(upstairs, { ...ALL, limits: whileUnheard(DEFAULT_LIMITS) })[1]).toBe(
+  expect(labelWords(upstairs, { ...ALL, now: NOON + 20 }).whole[1]).toBe("STALE 20 s · Level 1");
+  expect(labelWords(upstairs, { ...ALL, limits: whileUnheard(DEFAULT_LIMITS) }).whole[1]).toBe(
     "STALE 3 s · Level 1",
   );
 });

@@ -14,13 +14,23 @@ export interface Labelled {
   readonly alarms: ReadonlyMap<string, FrameAlarm>;
 }
 
-export function labelLines(node: FrameNode, { now, limits, levels, level, alarms }: Labelled): string[] {
+export interface LabelWords {
+  /** Its lines. */
+  readonly whole: readonly string[];
+  /** Its one line, where there is no room: without the storey, unless that is not sure. */
+  readonly short: string;
+}
+
+export function labelWords(node: FrameNode, { now, limits, levels, level, alarms }: Labelled): LabelWords {
   const status = statusAt(node, now, limits);
   const alarm = alarms.get(node.node);
   const age = shortAge(ageS(node, now));
   const name = alarm ? `${nameOf(node)} ${alarmWord(alarm.alarm)}` : nameOf(node);
   const old = status === "live" ? age : `${statusWord(status).toUpperCase()} ${age}`;
-  return [name, saysStorey(node, level, levels) ? `${old} · ${storeyWords(node, levels)}` : old];
+  const said = saysStorey(node, level, levels);
+  const storey = ` · ${storeyWords(node, levels)}`;
+  const short = `${name} · ${old}${said && storeyUnsure(node) ? storey : ""}`;
+  return { whole: [name, said ? old + storey : old], short };
 }
 
 /** Not of who flies, nor of who stands, for sure, on the storey that is shown. */

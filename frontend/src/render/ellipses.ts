@@ -9,6 +9,9 @@ import { markReach, movers, radios } from "./place";
 /** However sure the fix is, its ellipse shows this far outside the mark (px). */
 const LEAST_OUTSIDE_PX = 5;
 const LEAST_AROUND_RADIO_PX = 12;
+/** A larger ellipse than this is filled the less, the larger it is, so that one who is lost does not wash over all others. */
+const WHOLE_FILL_PX = 110;
+const FAINTEST = 0.2;
 /** Dash of the border by status: whole, broken, dotted. */
 export const DASHES: Record<Status, number[]> = { live: [], stale: [9, 5], lost: [2, 6], retired: [1, 8] };
 
@@ -30,19 +33,14 @@ function draw(context: CanvasRenderingContext2D, scene: Scene, { node, x, y }: P
   const { major_m, minor_m, angle_rad } = ellipseOf(covariance);
   const selected = node.node === scene.selected;
   const least = isMoving(node.role) ? markReach(scene, node) + LEAST_OUTSIDE_PX : LEAST_AROUND_RADIO_PX;
+  const majorPx = Math.max(least, major_m * scene.view.pixelsPerMetre);
+  const minorPx = Math.max(least, minor_m * scene.view.pixelsPerMetre);
   context.beginPath();
-  context.ellipse(
-    x,
-    y,
-    Math.max(least, major_m * scene.view.pixelsPerMetre),
-    Math.max(least, minor_m * scene.view.pixelsPerMetre),
-    -angle_rad,
-    0,
-    2 * Math.PI,
-  );
+  context.ellipse(x, y, majorPx, minorPx, -angle_rad, 0, 2 * Math.PI);
   const colour = scene.alarms.has(node.node) ? scene.palette.alarm : markOf(node, scene.crews).colour;
   context.fillStyle = colour;
-  context.globalAlpha = selected ? 0.26 : 0.15;
+  const strength = Math.min(1, Math.max(FAINTEST, WHOLE_FILL_PX ** 2 / (majorPx * minorPx)));
+  context.globalAlpha = (selected ? 0.26 : 0.15) * strength;
   context.fill();
   context.globalAlpha = 0.95;
   context.strokeStyle = colour;

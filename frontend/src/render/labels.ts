@@ -1,6 +1,6 @@
-/** Who it is and how old the fix is, beside each responder, where there is room. */
-import { labelLines } from "../domain/label";
-import type { View } from "../domain/view";
+/** Who it is and how old the fix is, of each responder. */
+import { labelWords } from "../domain/label";
+import { labelPlaces, nearest, type Spot, type Wanted } from "./label-places";
 import type { Box, Layer, Placed, Scene } from "./layer";
 import { markReach, movers, RADIUS } from "./place";
 
@@ -11,6 +11,7 @@ const NAME_FONT = "600 14px system-ui, sans-serif";
 const MOST_WIDTHS = 4000;
 
 const widths = new Map<string, number>();
+let before: ReadonlyMap<string, Spot> = new Map();
 
 /** Measuring text is dear: each text is measured once. */
 function widthOf(context: CanvasRenderingContext2D, text: string): number {
@@ -30,56 +31,73 @@ export const labels: Layer = {
     context.textAlign = "left";
     context.textBaseline = "top";
     const everybody = movers(scene);
-    // A label may cover nobody's mark, nor lie under what lies over the map.
-    const taken: Box[] = everybody.flatMap(({ x, y, elsewhere }) =>
+    const marks: Box[] = everybody.flatMap(({ x, y, elsewhere }) =>
       elsewhere ? [] : [{ x: x - RADIUS, y: y - RADIUS, width: 2 * RADIUS, height: 2 * RADIUS }],
     );
-    taken.push(...scene.covered);
-    // Whoever matters most is labelled first, and always.
-    for (const place of everybody.reverse()) {
-      const urgent = place.node.node === scene.selected || scene.alarms.has(place.node.node);
-      if ((place.elsewhere && !urgent) || place.node.status === "retired") continue;
-      const lines = labelLines(place.node, scene);
-      const away = markReach(scene, place.node) + BESIDE_PX;
-      const width = Math.max(...lines.map((line) => widthOf(context, line))) + 2 * PADDING;
-      const height = lines.length * LINE_PX + PADDING;
-      const places = around(place, away, width, height).filter((box) => inside(box, scene.view));
-      const free = (all: readonly Box[]) => places.find((box) => !all.some((other) => overlap(box, other)));
-      const box =
-        free(taken) ?? (urgent ? (free(scene.covered) ?? beside(place, away, width, height)) : null);
-      if (box === null) continue;
-      taken.push(box);
-      write(context, scene, place, lines, box);
+    const labelled = everybody
+      .reverse()
+      .filter((place) => (!place.elsewhere || urgent(scene, place)) && place.node.status !== "retired")
+      .map((place) => labelOf(context, scene, place));
+    const spots = labelPlaces(
+      labelled.map(({ wanted }) => wanted),
+      marks,
+      scene.covered,
+      scene.view,
+      before,
+    );
+    before = spots;
+    const drawn = labelled.flatMap((label) => {
+      const spot = spots.get(label.place.node.node);
+      return spot === undefined ? [] : [{ ...label, spot }];
+    });
+    for (const { place, spot } of drawn) if (spot.kind === "led") lead(context, scene, place, spot.box);
+    for (const { place, spot, whole, short } of drawn) {
+      write(context, scene, place, spot.kind === "whole" ? whole : [short], spot.box);
     }
     context.restore();
   },
 };
 
-/** Where a label may go, the best first: at the right, left, below or above, then at the corners. */
-function around({ x, y }: Placed, away: number, width: number, height: number): Box[] {
-  return [
-    { x: x + away, y: y - height / 2, width, height },
-    { x: x - away - width, y: y - height / 2, width, height },
-    { x: x - width / 2, y: y + away, width, height },
-    { x: x - width / 2, y: y - away - height, width, height },
-    { x: x + away, y: y + away / 2, width, height },
-    { x: x + away, y: y - away / 2 - height, width, height },
-    { x: x - away - width, y: y + away / 2, width, height },
-    { x: x - away - width, y: y - away / 2 - height, width, height },
-  ];
+interface Label {
+  readonly place: Placed;
+  readonly whole: readonly string[];
+  readonly short: string;
+  readonly wanted: Wanted;
 }
 
-/** Where nothing is free and the label must be seen all the same. */
-function beside({ x, y }: Placed, away: number, width: number, height: number): Box {
-  return { x: x + away, y: y - height / 2, width, height };
+function labelOf(context: CanvasRenderingContext2D, scene: Scene, place: Placed): Label {
+  const { whole, short } = labelWords(place.node, scene);
+  const size = (lines: readonly string[]) => ({
+    width: Math.max(...lines.map((line) => widthOf(context, line))) + 2 * PADDING,
+    height: lines.length * LINE_PX + PADDING,
+  });
+  const wanted = {
+    node: place.node.node,
+    x: place.x,
+    y: place.y,
+    away: markReach(scene, place.node) + BESIDE_PX,
+    whole: size(whole),
+    short: size([short]),
+    always: urgent(scene, place),
+  };
+  return { place, whole, short, wanted };
 }
 
-function inside({ x, y, width, height }: Box, view: View): boolean {
-  return x >= 0 && y >= 0 && x + width <= view.width && y + height <= view.height;
+function urgent(scene: Scene, { node }: Placed): boolean {
+  return node.node === scene.selected || scene.alarms.has(node.node);
 }
 
-function overlap(a: Box, b: Box): boolean {
-  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+/** A line from the edge of the mark to the nearest point of its label. */
+function lead(context: CanvasRenderingContext2D, scene: Scene, { node, x, y }: Placed, box: Box): void {
+  const [toX, toY] = nearest(box, x, y);
+  const length = Math.hypot(toX - x, toY - y);
+  const edge = Math.min(markReach(scene, node) / length, 1);
+  context.strokeStyle = scene.palette.ink;
+  context.lineWidth = 1.5;
+  context.beginPath();
+  context.moveTo(x + (toX - x) * edge, y + (toY - y) * edge);
+  context.lineTo(toX, toY);
+  context.stroke();
 }
 
 function write(

@@ -1,0 +1,97 @@
+import { expect, test } from "vitest";
+import { labelPlaces, MOST_LED, type Spot, type Wanted } from "./label-places";
+import type { Box } from "./layer";
+
+const MAP = { width: 800, height: 600 };
+const MARK = 13;
+const NOWHERE_BEFORE: ReadonlyMap<string, Spot> = new Map();
+
+function wants(node: string, x: number, y: number, always = false): Wanted {
+  const [whole, short] = [
+    { width: 130, height: 37 },
+    { width: 80, height: 21 },
+  ];
+  return { node, x, y, away: MARK + 6, whole, short, always };
+}
+
+const markOf = ({ x, y }: Wanted): Box => ({ x: x - MARK, y: y - MARK, width: 2 * MARK, height: 2 * MARK });
+
+function placed(all: readonly Wanted[], before = NOWHERE_BEFORE, covered: readonly Box[] = []) {
+  return labelPlaces(all, all.map(markOf), covered, MAP, before);
+}
+
+function overlap(a: Box, b: Box): boolean {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/** So many shoulder to shoulder, a few pixels apart. */
+const crowd = (people: number) =>
+  Array.from({ length: people }, (_, i) => wants(`ff${i}`, 400 + 9 * (i % 4), 300 + 7 * Math.floor(i / 4)));
+
+test("who stands alone has the whole label at the right of the mark", () => {
+  const spot = placed([wants("ff1", 400, 300)]).get("ff1");
+  expect(spot?.kind).toBe("whole");
+  expect(spot?.box).toEqual({ x: 419, y: 281.5, width: 130, height: 37 });
+});
+
+test.each([2, 3, 6, 12])(
+  "of %i who stand shoulder to shoulder each has a label, off all others and all marks",
+  (people) => {
+    const all = crowd(people);
+    const spots = placed(all);
+    expect([...spots.keys()].sort()).toEqual(all.map(({ node }) => node).sort());
+    const boxes = [...spots.values()].map(({ box }) => box);
+    const marks = all.map(markOf);
+    for (const [i, box] of boxes.entries()) {
+      expect([...boxes.slice(i + 1), ...marks].some((other) => overlap(box, other))).toBe(false);
+      expect(
+        box.x >= 0 && box.y >= 0 && box.x + box.width <= MAP.width && box.y + box.height <= MAP.height,
+      ).toBe(true);
+    }
+  },
+);
+
+test("a label beside the mark, whole or short, comes before one with a line", () => {
+  const kinds = [...placed(crowd(12)).values()].map(({ kind }) => kind);
+  expect(kinds).toContain("whole");
+  expect(kinds.lastIndexOf("whole")).toBeLessThan(kinds.indexOf("led"));
+});
+
+test("a line goes round the label of another where there is a way", () => {
+  const other = { ...wants("other", 452, 300), whole: { width: 20, height: 37 } };
+  const walls = { x: 200, y: 200, width: 270, height: 200 };
+  const spots = labelPlaces([other, wants("walled-in", 400, 300)], [walls], [], MAP, NOWHERE_BEFORE);
+  const [beside, led] = [spots.get("other"), spots.get("walled-in")];
+  expect([beside?.kind, led?.kind]).toEqual(["whole", "led"]);
+  expect(led?.line.some((part) => beside && overlap(part, beside.box))).toBe(false);
+});
+
+test("of more people than anyone could follow lines to, none has a line", () => {
+  const spots = placed(crowd(MOST_LED + 1));
+  expect([...spots.values()].some(({ kind }) => kind === "led")).toBe(false);
+  expect(spots.size).toBeGreaterThan(0);
+});
+
+test("a label stays on its side of the mark when the better one becomes free", () => {
+  const [walker, other] = [wants("walker", 400, 300), wants("other", 460, 300)];
+  const first = placed([walker, other]);
+  expect(first.get("walker")?.index).not.toBe(0);
+  const apart = placed([walker, { ...other, x: 700 }], first);
+  expect(apart.get("walker")?.index).toBe(first.get("walker")?.index);
+});
+
+test("a short label becomes whole again as soon as there is room", () => {
+  const all = crowd(12);
+  const crowded = placed(all);
+  const short = all.find(({ node }) => crowded.get(node)?.kind !== "whole");
+  if (short === undefined) throw new Error("all twelve labels are whole");
+  expect(placed([short], crowded).get(short.node)?.kind).toBe("whole");
+});
+
+test("no label lies under the buttons; who is in alarm is labelled also where nothing is free", () => {
+  const buttons = { x: 410, y: 0, width: 390, height: 600 };
+  expect(placed([wants("ff1", 400, 300)], NOWHERE_BEFORE, [buttons]).get("ff1")?.index).toBe(1);
+  const everywhere = { x: 0, y: 0, ...MAP };
+  const both = [wants("mayday", 400, 300, true), wants("ff1", 600, 300)];
+  expect([...placed(both, NOWHERE_BEFORE, [everywhere]).keys()]).toEqual(["mayday"]);
+});
