@@ -39,6 +39,11 @@ def step(t: float, node: str, delta_m: Sequence[float]) -> Reading:
     return {"kind": "displacement", "t": t, "node": node, "delta_m": [float(value) for value in delta_m]}
 
 
+def dropped(t: float, node: str, by: str) -> Reading:
+    """A breadcrumb that a responder has dropped."""
+    return {"kind": "drop", "t": t, "node": node, "by": by}
+
+
 def alarm(
     t: float, node: str, kind: str = "mayday", state: str = "raised", text: str | None = None
 ) -> Reading:

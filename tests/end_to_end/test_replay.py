@@ -4,7 +4,7 @@ import pytest
 
 from tests.end_to_end.canvas import FIRST_CREW, SECOND_CREW, Pixels
 from tests.end_to_end.commander import BoardRow, Commander
-from tests.end_to_end.scene import alarm, base, heard, recorded, responder, step
+from tests.end_to_end.scene import alarm, base, dropped, heard, recorded, responder, step
 from tests.running import Post, Server, eventually
 
 T0 = 1_763_712_345.0
@@ -102,6 +102,19 @@ def test_arrows_lead_from_event_to_event_and_nowhere_else(
     before = commander.clock
     commander.goes_to_the_next_event()
     eventually(lambda: commander.clock > before and commander.events_either_way == (False, False))
+
+
+def test_drops_are_marked_those_of_the_past_and_those_while_one_looks(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
+    heard(post, incident, step(T0 + 1, "walker", [1, 0, 0]), dropped(T0 + 1, "b1", "walker"))
+    heard(post, incident, step(T0 + 3, "walker", [1, 0, 0]))
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.event_marks == ["b1 dropped"])
+    heard(post, incident, step(T0 + 30, "walker", [4, 0, 0]), dropped(T0 + 30, "b2", "walker"))
+    eventually(lambda: commander.event_marks == ["b1 dropped", "b2 dropped"])
 
 
 def test_an_alarm_says_where_the_responder_is_now_also_before_who_watches_the_past(

@@ -1,43 +1,61 @@
 /** The marks on the timeline: what has been seen, and what the record tells of the time before. */
-import { type LoggedAlarm, raisedOf } from "../domain/past-alarms";
-import { dropMarks, type Mark, withAlarmMarks } from "../domain/timeline";
-import type { FrameAlarm, Track } from "../domain/types";
-import { loggedAlarms } from "../sources/log";
+import { dropsOf, type LoggedAlarm, type LoggedDrop, newBreadcrumbs } from "../domain/logged";
+import { raisedOf } from "../domain/past-alarms";
+import { type Mark, withAlarmMarks, withDropMarks } from "../domain/timeline";
+import type { DeltaMessage, FrameAlarm, FrameMessage } from "../domain/types";
+import { loggedPages } from "../sources/log";
 
 export class Marks {
   list = $state.raw<readonly Mark[]>([]);
   private reading = new AbortController();
+  /** Breadcrumbs that have been in the picture. */
+  private readonly lying = new Set<string>();
 
   /** @param name gives the spoken name of a node */
   constructor(private readonly name: (node: string) => string) {}
 
   clear(): void {
     this.reading.abort();
+    this.lying.clear();
     this.list = [];
   }
 
-  alarms(raised: readonly FrameAlarm[]): void {
-    this.list = withAlarmMarks(this.list, raised, this.name);
+  /** A live picture has changed. */
+  seen(message: FrameMessage | DeltaMessage): void {
+    this.alarms(message.alarms);
+    const fresh = newBreadcrumbs(message.nodes, this.lying);
+    for (const { node } of fresh) this.lying.add(node);
+    // Those of a whole frame may have lain there for long: of them the log tells.
+    if (message.type === "delta") this.drops(fresh);
   }
 
-  drops(tracks: readonly Track[], breadcrumbs: ReadonlySet<string>): void {
-    this.list = [...this.list, ...dropMarks(tracks, breadcrumbs)].sort((a, b) => a.t - b.t);
-  }
-
-  /** Reads the alarms of the past out of the log of an incident; what cannot be read has no marks. */
+  /** Reads the past out of the log of an incident; what cannot be read has no marks. */
   async readPast(id: string, lastSeq: number): Promise<void> {
     this.reading.abort();
     const reading = new AbortController();
     this.reading = reading;
-    const said: LoggedAlarm[] = [];
+    const alarms: LoggedAlarm[] = [];
+    const drops: LoggedDrop[] = [];
     try {
-      for await (const page of loggedAlarms(id, lastSeq, reading.signal)) {
+      for await (const page of loggedPages(id, lastSeq, reading.signal)) {
         if (reading.signal.aborted) return;
-        said.push(...page);
+        alarms.push(...page.flatMap((line) => line.alarms));
+        drops.push(...page.flatMap((line) => line.drops));
+        this.drops(drops.filter(({ dropped }) => dropped));
       }
     } catch {
       // The log is not the way by which a commander hears of a lost connection.
     }
-    if (!reading.signal.aborted) this.alarms(raisedOf(said));
+    if (reading.signal.aborted) return;
+    this.alarms(raisedOf(alarms));
+    this.drops(dropsOf(drops));
+  }
+
+  private alarms(raised: readonly FrameAlarm[]): void {
+    this.list = withAlarmMarks(this.list, raised, this.name);
+  }
+
+  private drops(dropped: readonly { node: string; t: number }[]): void {
+    this.list = withDropMarks(this.list, dropped, this.name);
   }
 }

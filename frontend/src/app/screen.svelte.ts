@@ -156,7 +156,9 @@ export class Screen implements DoorOwner, ReplayOwner {
     this.live.follow(new LiveSource(id));
     if (t !== null) this.replay.begin(t, true);
     await this.fillPast(id);
-    if (this.incident.id === id) void this.marks.readPast(id, this.incident.last_seq);
+    if (this.incident.id !== id) return;
+    // What is in the picture by now was logged before it.
+    void this.marks.readPast(id, Math.max(this.incident.last_seq, this.livePicture?.seq ?? 0));
   }
 
   renewed(incident: Incident): void {
@@ -176,7 +178,7 @@ export class Screen implements DoorOwner, ReplayOwner {
   private liveChanged(message: FrameMessage | DeltaMessage): void {
     if (message.nodes.length > 0) this.earliestT = Math.min(this.earliestT, message.clock_t);
     this.standing = standingAlarms(message.alarms);
-    this.marks.alarms(message.alarms);
+    this.marks.seen(message);
     for (const { node, role, t, position_m } of message.nodes) {
       if (isMoving(role) && position_m != null) this.trails.add(node, t, position_m);
     }
@@ -191,10 +193,5 @@ export class Screen implements DoorOwner, ReplayOwner {
     if (this.incident?.id !== id) return;
     this.trackList = list;
     this.trails.fill(list);
-    const crumbs = new Set<string>();
-    for (const { state } of this.live.picture?.nodes.values() ?? []) {
-      if (state.role === "breadcrumb") crumbs.add(state.node);
-    }
-    this.marks.drops(list, crumbs);
   }
 }

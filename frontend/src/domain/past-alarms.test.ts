@@ -1,11 +1,9 @@
 import { expect, test } from "vitest";
 import stories from "../../../tests/backend/tracking/alarm_stories.json";
-import { alarmsInLine, type LoggedAlarm, raisedOf } from "./past-alarms";
+import type { LoggedAlarm } from "./logged";
+import { raisedOf } from "./past-alarms";
 import { anAlarm, NOON } from "./samples";
 import type { FrameAlarm } from "./types";
-
-const line = (readings: object[], rejected: object[] = []) =>
-  JSON.stringify({ seq: 7, received: NOON, gateway: "g", batch: "b", rejected, readings });
 
 const said = (state: FrameAlarm["state"], after_s: number, seq: number): LoggedAlarm => ({
   ...anAlarm({ state, t: NOON + after_s }),
@@ -13,21 +11,6 @@ const said = (state: FrameAlarm["state"], after_s: number, seq: number): LoggedA
 });
 
 const times = (...all: LoggedAlarm[]) => raisedOf(all).map(({ t }) => t - NOON);
-
-test("the alarms of a line are found among its other readings, those set aside are not", () => {
-  const call = { kind: "alarm", t: NOON, node: "ff1", alarm: "mayday", state: "raised" };
-  const readings = [
-    { kind: "rssi", t: NOON, a: "alarm", b: "ff1", dbm: -50 },
-    call,
-    { ...call, t: NOON + 1 },
-  ];
-  const found = alarmsInLine(line(readings, [{ index: 2, code: "old", message: "too old" }]));
-  expect(found.map(({ seq, node, t }) => [seq, node, t])).toEqual([[7, "ff1", NOON]]);
-});
-
-test("a line without an alarm has none", () => {
-  expect(alarmsInLine(line([{ kind: "status", t: NOON, node: "ff1" }]))).toEqual([]);
-});
 
 test.each(stories)("the server's rule: $what", ({ said: story, raised }) => {
   const heard = story.map(([state, after_s, text], index) => ({

@@ -1,33 +1,12 @@
-/** Alarms of the past, out of the lines of the log: what was raised, when. */
+/** Alarms of the past, out of what the log says of them: what was raised, when. */
 import { alarmKey, isCall } from "./alarms";
+import type { LoggedAlarm } from "./logged";
 import type { FrameAlarm } from "./types";
 
 /** Units repeat an alarm while it sounds: a raise so soon after the last one is the same alarm (s). */
 const REPEAT_S = 30;
 /** A unit may say something new each time it repeats itself: the first words and the newest are kept. */
 const TEXTS_KEPT = 8;
-
-/** An alarm reading, and its place in the log. */
-export interface LoggedAlarm extends FrameAlarm {
-  readonly seq: number;
-}
-
-interface LogLine {
-  readonly seq: number;
-  readonly rejected?: readonly { index?: number | null }[];
-  readonly readings: readonly Record<string, unknown>[];
-}
-
-/** The alarm readings of a line of the log, those set aside excepted. */
-export function alarmsInLine(line: string): LoggedAlarm[] {
-  // Hardly any line has one: most need not be understood.
-  if (!line.includes('"alarm"')) return [];
-  const { seq, rejected, readings } = JSON.parse(line) as LogLine;
-  const aside = new Set(rejected?.map(({ index }) => index));
-  return readings
-    .filter((reading, index) => reading.kind === "alarm" && !aside.has(index))
-    .map((reading) => ({ ...(reading as unknown as FrameAlarm), seq }));
-}
 
 /** Of everything said of alarms, in whatever order it was read: the alarms, as they were raised. */
 export function raisedOf(said: readonly LoggedAlarm[]): FrameAlarm[] {

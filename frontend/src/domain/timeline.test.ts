@@ -1,6 +1,14 @@
 import { describe, expect, test } from "vitest";
 import { anAlarm, anIncident, NOON } from "./samples";
-import { dropMarks, extentOf, type Mark, neighbourMark, nextSpeed, withAlarmMarks, within } from "./timeline";
+import {
+  extentOf,
+  type Mark,
+  neighbourMark,
+  nextSpeed,
+  withAlarmMarks,
+  withDropMarks,
+  within,
+} from "./timeline";
 import type { Track } from "./types";
 
 const UNSEEN = Number.POSITIVE_INFINITY;
@@ -43,10 +51,21 @@ describe("the bar", () => {
   });
 });
 
-test("a breadcrumb was dropped where its track begins; responders drop no mark", () => {
-  expect(dropMarks([track("b1", NOON), track("ff1", NOON)], new Set(["b1"]))).toEqual([
-    { t: NOON, kind: "drop", text: "b1 dropped" },
-  ]);
+describe("drop marks", () => {
+  const lying = withDropMarks([], [{ node: "b1", t: NOON }], (node) => node.toUpperCase());
+
+  test("say which breadcrumb", () => {
+    expect(lying).toEqual([{ t: NOON, kind: "drop", text: "B1 dropped" }]);
+  });
+
+  test("are set once, though the picture and the log tell of the same drop a little apart", () => {
+    expect(withDropMarks(lying, [{ node: "b1", t: NOON + 1 }], () => "B1")).toBe(lying);
+  });
+
+  test("are set again for one that is dropped again, in order of time", () => {
+    const both = withDropMarks(lying, [{ node: "b1", t: NOON - 60 }], () => "B1");
+    expect(both.map(({ t }) => t - NOON)).toEqual([-60, 0]);
+  });
 });
 
 describe("alarm marks", () => {

@@ -39,13 +39,21 @@ export function extentOf(
   return { from: Math.min(from, newestT - 1), to: newestT };
 }
 
-/** A drop for each breadcrumb where its track begins. */
-export function dropMarks(tracks: readonly Track[], breadcrumbs: ReadonlySet<string>): Mark[] {
-  return tracks.flatMap(({ node, points }) =>
-    points[0] && breadcrumbs.has(node)
-      ? [{ t: points[0][0], kind: "drop" as const, text: `${node} dropped` }]
-      : [],
-  );
+/** What a live picture and the log say of one drop may differ by this (s). */
+const SAME_DROP_S = 10;
+
+/** Adds the breadcrumbs dropped that are not marked yet; the very same array where nothing is new. */
+export function withDropMarks(
+  marks: readonly Mark[],
+  drops: readonly { node: string; t: number }[],
+  name: (node: string) => string,
+): readonly Mark[] {
+  const fresh = drops
+    .map(({ node, t }): Mark => ({ t, kind: "drop", text: `${name(node)} dropped` }))
+    .filter(
+      (mark) => !marks.some((known) => known.text === mark.text && Math.abs(known.t - mark.t) < SAME_DROP_S),
+    );
+  return fresh.length === 0 ? marks : [...marks, ...fresh].sort((a, b) => a.t - b.t);
 }
 
 /** Adds the raised alarms not marked yet; the very same array where nothing is new. */

@@ -1,5 +1,5 @@
 /** The log of an incident, read in the background: its newest part first, and no more than a screen can bear. */
-import { alarmsInLine, type LoggedAlarm } from "../domain/past-alarms";
+import { type Logged, loggedIn } from "../domain/logged";
 
 const LINES_A_PAGE = 250;
 /** So much is read for one incident: about an hour of two crews (characters). */
@@ -8,25 +8,25 @@ const MOST_CHARACTERS = 8_000_000;
 const PAUSE_MS = 400;
 
 /**
- * Everything said of alarms in the log, page after page.
+ * Everything said in the log that the timeline marks, page after page.
  *
  * @param id the incident
  * @param lastSeq its newest entry
  * @param signal ends it
  * @returns what each page holds, the newest page first; ends early where the log is larger than that
  */
-export async function* loggedAlarms(
+export async function* loggedPages(
   id: string,
   lastSeq: number,
   signal: AbortSignal,
-): AsyncGenerator<LoggedAlarm[]> {
+): AsyncGenerator<readonly Logged[]> {
   let budget = MOST_CHARACTERS;
   for (let end = lastSeq; end > 0 && budget > 0 && !signal.aborted; end -= LINES_A_PAGE) {
     const after = Math.max(0, end - LINES_A_PAGE);
-    const page: LoggedAlarm[] = [];
+    const page: Logged[] = [];
     for await (const line of lines(id, after, end - after, signal)) {
       budget -= line.length;
-      page.push(...alarmsInLine(line));
+      page.push(loggedIn(line));
       if (budget <= 0) return;
     }
     yield page;
