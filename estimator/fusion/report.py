@@ -14,8 +14,8 @@ from estimator.graph.dense import Array, Indices
 from estimator.graph.variable import Variable
 from estimator.measurements.bearing import within_pi
 
-PLANE = [3, 4, 6]
-"""Where what `shown` tells has the variances and the covariance of east and north."""
+TRIANGLE = [0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]
+"""Rows and columns of a covariance, 3 × 3, in the order in which `shown` tells it behind a place."""
 NOTHING = 1e-3
 """What a doubt adds to the variance of a scale, as a share of it, that is not seen in any place."""
 MOVING_MPS = 0.3
@@ -49,8 +49,8 @@ def estimates(state: FusionState, covariance: Array) -> list[NodeEstimate]:
     told = shown(starts, graph.reference, covariance)
     loose = loose_headings(state, covariance)
     if loose:
-        across, variance = covariance[starts[:, None] + np.arange(2)][:, :, loose], covariance[loose, loose]
-        told[:, PLANE] += swung_m2(across, variance)[:, [0, 0, 1], [0, 1, 1]]
+        across = covariance[(starts[:, None] + np.arange(3))[:, :, None], loose]
+        told[:, 3:] += swung_m2(across, covariance[loose, loose])[:, *TRIANGLE]
     found = {node.node: place for node, place in zip(held, told.tolist(), strict=True)}
     return [_estimate(state, node, covariance, found.get(node.node)) for node in state.nodes.values()]
 
@@ -148,7 +148,7 @@ def relative(state: FusionState, covariance: Array, a: str, b: str) -> Relative 
     across = selector @ covariance
     total += across @ selector.T
     loose = loose_headings(state, covariance)
-    total[:2, :2] += swung_m2(across[None, :2, loose], covariance[loose, loose])[0]
+    total += swung_m2(across[None, :, loose], covariance[loose, loose])[0]
     total[2, 2] += sum(node.doubt_up_m2 for node in ends)
     held = [node.otherwise if node.place_m is None else () for node in ends]
     total += doubt_between_m2(held[0], places[0][:2], held[1], places[1][:2])

@@ -234,8 +234,8 @@ def retire(state: FusionState, node: NodeState, t: float) -> None:
         doubt = doubt_m2(node.otherwise, state.graph.value(node.position)[:2])
         covariance = state.graph.covariance()
         own = covariance[rows, rows] + doubt
-        loose, plane = loose_headings(state, covariance), slice(rows.start, rows.start + 2)
-        own[:2, :2] += swung_m2(covariance[None, plane, loose], covariance[loose, loose])[0]
+        loose = loose_headings(state, covariance)
+        own += swung_m2(covariance[None, rows, loose], covariance[loose, loose])[0]
         own[2, 2] += node.doubt_up_m2
         covariance_m2 = upper_triangle(own)
         owned = [v for v in (node.position, node.velocity, node.unit) if v in state.graph]

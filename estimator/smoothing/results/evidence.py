@@ -81,7 +81,7 @@ def explain(
     across = told[:, :2]
     total = float(np.trace(covariance[:2, :2]))
     doubt[2, 2] += node.doubt_up_m2
-    doubt[:2, :2] += swung(told[:, 3 : 3 + len(headings)], headings, start)
+    doubt += swung(told[:, 3 : 3 + len(headings)], headings, start)
     doubt += doubted(judged, solved.x, told[:, 3 + len(headings) :], start)
     rows = problem.rows
     flat = _flat(layout, rows)

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.fusion.motion.swings import LOOSE_RAD, arc_m2, swung_m2
+from estimator.fusion.motion.swings import LOOSE_RAD, arcs_ahead_m2, arcs_m2, swung_m2
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.keyframes.walks import HEADING, STATES
+from estimator.smoothing.keyframes.walks import HEADING, PLACES, STATES
 from estimator.smoothing.problem.solved import Solved
 
 
@@ -52,19 +52,19 @@ def swing(layout: Layout, solved: Solved, found: tuple[Array, Array, Array]) -> 
             continue
         if variance[walk.last] > 0.0:
             loose.append(walk.last * layout.width + STATES * i + HEADING)
-        across = keyframes[:, i, :2, HEADING].copy()
-        keyframes[:, i, :2, :2] += arc_m2(across, across, variance)
-        both = np.minimum(variance[:-1], variance[1:])
-        ahead[:, i, :2, :2] += arc_m2(across[:-1], across[1:], both)
+        across, known = keyframes[:, i, :PLACES, HEADING].copy(), slice(HEADING + 1)
+        keyframes[:, i, :PLACES, :PLACES] += arcs_m2(across, variance)
+        ahead[:, i, :PLACES, :PLACES] += arcs_ahead_m2(across[:, :2], variance, ahead[:, i, known, known])
     if loose and layout.stands:
         size = layout.length * layout.width
         told = responses(layout, solved, loose)
         for start in layout.stands.values():
-            border[start : start + 2, start : start + 2] += swung(told, loose, size + start)
+            own = slice(start, start + PLACES)
+            border[own, own] += swung(told, loose, size + start)
 
 
 def swung(told: Array, headings: Sequence[int], start: int) -> Array:
-    """What is to be added to one place's covariance, 2 × 2 (m²).
+    """What is to be added to one place's covariance, 3 × 3 (m²).
 
     Args:
         told: columns of the covariance for headings, size × m.
@@ -73,4 +73,4 @@ def swung(told: Array, headings: Sequence[int], start: int) -> Array:
     """
     variance = np.array([told[row, column] for column, row in enumerate(headings)])
     loose = np.flatnonzero(variance > LOOSE_RAD**2)
-    return np.asarray(swung_m2(told[None, start : start + 2][:, :, loose], variance[loose])[0])
+    return np.asarray(swung_m2(told[None, start : start + PLACES][:, :, loose], variance[loose])[0])

@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
+from estimator.estimate import Covariance6
 from estimator.fusion import physics
+from estimator.fusion.entering.introduce import retire, upper_triangle
 from estimator.fusion.learned.calibration import Calibration
+from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.report import covariance_of
+from estimator.fusion.report import covariance_of, estimates, relative
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.variable import Variable
@@ -42,3 +45,62 @@ def test_a_picture_holds_both_kinds_of_a_scale_each_as_likely_as_it_is(seed: int
     off = other - x
     mixture = (1.0 - share) * covariance + share * (unsure + np.outer(off, off))
     assert covariance_of(state) == pytest.approx(mixture, rel=1e-6, abs=1e-12)
+
+
+def turned(sigma_rad: float) -> FusionState:
+    """Two have walked by units that may be turned, and what tells their turns tells their heights too."""
+    state = FusionState()
+    for name, way_m, climbed_m in (("ff1", (20.0, 0.0), 0.4), ("ff2", (-5.0, 11.0), -0.3)):
+        node = NodeState(node=name, role="responder", t=20.0, mode="unit")
+        state.graph.add_node(node.position, (*way_m, 0.0), (1e3, 1e3, 1e3))
+        state.graph.add_node(node.unit, (0.0, 0.0, 0.0), (sigma_rad, 1e-3, 0.02))
+        state.nodes[name] = node
+        start, turn = state.graph.starts[node.position], state.graph.starts[node.unit]
+        columns = np.column_stack([start + np.arange(3), np.full(3, turn)])
+        slopes = np.column_stack([np.ones(3), [way_m[1], -way_m[0], -climbed_m]])
+        state.graph.add_measurements(columns, slopes, np.full(3, 0.1**-2), np.zeros(3))
+    return state
+
+
+def matrix_of(told: Covariance6 | None) -> Array:
+    assert told is not None
+    ee, en, eu, nn, nu, uu = told
+    return np.array([[ee, en, eu], [en, nn, nu], [eu, nu, uu]])
+
+
+@pytest.mark.parametrize("sigma_rad", [0.2, 1.0, np.pi, 13.0])
+def test_what_is_shown_is_a_covariance_however_a_height_is_known_by_the_heading(sigma_rad: float) -> None:
+    state = turned(sigma_rad)
+    covariance = covariance_of(state)
+    for estimate in estimates(state, covariance):
+        told = matrix_of(estimate.covariance_m2)
+        assert np.linalg.eigvalsh(told)[0] > 1e-3
+        # His height is told as before, and goes with his place as a sine goes with its angle.
+        rows, turn = (state.graph.starts[Variable(k, estimate.node)] for k in ("position", "unit"))
+        linear = covariance[rows : rows + 3, rows : rows + 3]
+        assert told[2, 2] == linear[2, 2]
+        assert told[:2, 2] == pytest.approx(np.exp(-0.5 * covariance[turn, turn]) * linear[:2, 2], abs=1e-9)
+    between = relative(state, covariance, "ff1", "ff2")
+    assert between is not None
+    assert np.linalg.eigvalsh(matrix_of(between.covariance_m2))[0] > 1e-3
+
+
+def test_who_is_retired_or_shown_from_a_sure_place_is_as_unsure_as_before() -> None:
+    state = turned(np.pi)
+    state.nodes["base"] = NodeState(node="base", role="base", t=0.0, mode="fixed", place_m=(0.0, 0.0, 0.0))
+    covariance = covariance_of(state)
+    before = estimates(state, covariance)[0].covariance_m2
+    from_base = relative(state, covariance, "base", "ff1")
+    retire(state, state.nodes["ff1"], 21.0)
+    after = estimates(state, covariance_of(state))[0].covariance_m2
+    assert from_base is not None
+    assert from_base.covariance_m2 == pytest.approx(before)
+    assert after == pytest.approx(before)
+
+
+def test_who_knows_his_heading_is_shown_as_the_matrix_has_him() -> None:
+    state = turned(0.05)
+    covariance = covariance_of(state)
+    for estimate in estimates(state, covariance):
+        rows = state.graph.rows(Variable("position", estimate.node))
+        assert estimate.covariance_m2 == upper_triangle(covariance[rows, rows])

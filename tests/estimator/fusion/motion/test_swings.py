@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.estimate import Covariance6, NodeEstimate, Vector3
-from estimator.fusion.motion.swings import LOOSE_RAD, arc_m2, swung_m2
+from estimator.fusion.motion.swings import LOOSE_RAD, arcs_ahead_m2, arcs_m2, swung_m2
+from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop
@@ -38,25 +39,103 @@ def test_an_arc_has_the_second_moments_that_quadrature_gives(
     aside = np.array([-lever[1], lever[0]])
     tangent = sigma**2 * np.outer(aside, aside)
     across = sigma**2 * aside
-    found = arc_m2(across, across, np.array(sigma**2))
+    (found,) = arcs_m2(across[None], np.array([sigma**2]))
     np.testing.assert_allclose(found + tangent, (off * share) @ off.T, atol=1e-6 * lever_m**2)
 
 
 def test_a_heading_that_is_well_known_does_next_to_nothing() -> None:
     across = np.array([0.0, LOOSE_RAD**2 * WAY_M])
-    found = arc_m2(across, across, np.array(LOOSE_RAD**2))
+    found = arcs_m2(across[None], np.array([LOOSE_RAD**2]))
     assert np.abs(found).max() < (0.01 * WAY_M) ** 2
 
 
 @given(st.integers(0, 10_000), st.integers(1, 4))
 def test_what_is_left_of_a_place_is_never_less_than_nothing(seed: int, headings: int) -> None:
-    """However headings are known to each other."""
+    """However headings are known to each other, and heights by them."""
     chance = np.random.default_rng(seed)
-    half = chance.normal(0.0, 1.0, (headings + 2, headings + 2)) * chance.uniform(0.1, 10.0)
-    known = half @ half.T
-    places, turns = known[:2, :2], np.arange(2, headings + 2)
-    added = swung_m2(known[None, :2, 2:], known[turns, turns])[0]
-    assert np.linalg.eigvalsh(places + added)[0] > -1e-9 * np.trace(places)
+    known = gaussian(chance, headings + 3)
+    place, turns = known[:3, :3], np.arange(3, headings + 3)
+    added = swung_m2(known[None, :3, 3:], known[turns, turns])[0]
+    assert np.linalg.eigvalsh(place + added)[0] > -1e-9 * np.trace(place)
+
+
+def gaussian(chance: np.random.Generator, numbers: int) -> Array:
+    """A covariance of numbers of all sizes, some of which are nearly told by the others."""
+    half = chance.normal(0.0, 1.0, (numbers, numbers)) * 10.0 ** chance.uniform(-2.0, 1.0, numbers)
+    half *= 10.0 ** chance.uniform(-1.0, 1.0, (numbers, 1))
+    return np.asarray(half @ half.T)
+
+
+def turned(lever_m: Array, psi: Array) -> Array:
+    """Where a turn takes the end of a lever, from where it was: its turns' × 3 (m)."""
+    (e, n), along, aside = lever_m, np.cos(psi) - 1.0, np.sin(psi)
+    return np.column_stack([e * along - n * aside, n * along + e * aside, np.zeros(len(psi))])
+
+
+def sideways(lever_m: Array) -> Array:
+    """Where a small turn takes it, by the radian, 3 (m)."""
+    return np.array([-lever_m[1], lever_m[0], 0.0])
+
+
+@pytest.mark.parametrize("sigma", [0.3, 0.8, 1.5, 3.0])
+def test_a_place_and_its_height_spread_as_samples_of_who_is_turned_do(sigma: float) -> None:
+    """He is carried to p + R(ψ) l, and his height is known by ψ and by p."""
+    chance, lever_m = np.random.default_rng(5), np.array([6.0, -8.0])
+    psi, carried = chance.normal(0.0, sigma, 400_000), chance.normal(0.0, 1.0, (400_000, 3))
+    carried = carried @ np.array([[2.0, 0.3, 0.5], [0.0, 1.0, -0.4], [0.0, 0.0, 0.5]])
+    carried[:, 2] += 1.2 / sigma * psi
+    linear = carried + np.outer(psi, sideways(lever_m))
+    across = linear.T @ psi / len(psi)
+    told = linear.T @ linear / len(psi)
+    told += swung_m2(across[None, :, None], np.array([np.mean(psi**2)]))[0]
+    arc = carried + turned(lever_m, psi)
+    np.testing.assert_allclose(told, arc.T @ arc / len(psi), atol=0.3)
+
+
+@given(st.floats(LOOSE_RAD, 13.0), st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
+def test_a_place_is_with_itself_as_it_is(sigma: float, east: float, north: float) -> None:
+    across, v = np.array([east, north, 0.7 * sigma]), sigma**2
+    ahead = np.zeros((1, 4, 4))
+    ahead[0, 3] = ahead[0, :, 3] = [*across, v]
+    known = np.array([v, v])
+    found = arcs_ahead_m2(np.array([across[:2], across[:2]]), known, ahead)
+    np.testing.assert_allclose(found, arcs_m2(across[None], known[:1]), atol=1e-9, rtol=1e-9)
+
+
+@pytest.mark.parametrize("sigma", [0.4, 1.2])
+@pytest.mark.parametrize("walked_rad", [0.05, 1.0])
+def test_a_place_and_the_next_one_spread_together_as_samples_do(sigma: float, walked_rad: float) -> None:
+    chance, count = np.random.default_rng(6), 400_000
+    psi = chance.normal(0.0, sigma, (count, 1)) + [0.0, 1.0] * chance.normal(0.0, walked_rad, (count, 1))
+    levers_m = np.array([6.0, -8.0]), np.array([9.0, -5.0])
+    # How he is carried further is known by how he turns between, and his height by both headings.
+    first = chance.normal(0.0, 1.0, (count, 3)) + 0.5 * np.outer(psi[:, 0], [0.0, 0.0, 1.0])
+    more = psi[:, 1] - psi[:, 0] * np.mean(psi[:, 0] * psi[:, 1]) / np.mean(psi[:, 0] ** 2)
+    first[:, :2] += np.outer(more, [0.8, -0.6])
+    second = first + chance.normal(0.0, 0.5, (count, 3)) + 0.4 * np.outer(psi[:, 1], [0.0, 0.0, 1.0])
+    second[:, :2] -= np.outer(psi[:, 1], second[:, :2].T @ psi[:, 1] / np.sum(psi[:, 1] ** 2))
+    carried = first, second
+    linear = [c + np.outer(p, sideways(m)) for c, p, m in zip(carried, psi.T, levers_m, strict=True)]
+    one, other = (np.column_stack([p, f]) for p, f in zip(linear, psi.T, strict=True))
+    across = np.array([p[:, :2].T @ f / count for p, f in zip(linear, psi.T, strict=True)])
+    told = one.T @ other / count
+    told[:3, :3] += arcs_ahead_m2(across, np.mean(psi**2, axis=0), told[None])[0]
+    arcs = [c + turned(m, p) for c, m, p in zip(carried, levers_m, psi.T, strict=True)]
+    np.testing.assert_allclose(told[:3, :3], arcs[0].T @ arcs[1] / count, atol=0.3)
+
+
+@given(st.integers(0, 10_000), st.sampled_from([(1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]))
+def test_what_lies_between_two_places_is_never_less_than_nothing(
+    seed: int, loose: tuple[float, float]
+) -> None:
+    """However headings and places are known to each other, and where only one of both is on an arc."""
+    known = gaussian(np.random.default_rng(seed), 8)
+    one, other, pairs = known[:4, :4], known[4:, 4:], known[None, :4, 4:]
+    variance = np.array([one[3, 3], other[3, 3]]) * loose
+    own = arcs_m2(np.array([one[:3, 3], other[:3, 3]]), variance)
+    together = pairs[0, :3, :3] + arcs_ahead_m2(np.array([one[:2, 3], other[:2, 3]]), variance, pairs)[0]
+    joint = np.block([[one[:3, :3] + own[0], together], [together.T, other[:3, :3] + own[1]]])
+    assert np.linalg.eigvalsh(joint)[0] > -1e-9 * np.trace(known)
 
 
 def ahead(heading_sigma_rad: float, more: tuple[AnyReading, ...] = ()) -> list[AnyReading]:
