@@ -94,6 +94,10 @@ SURVEY_SIGMA_M = 0.5
 FIX_SIGMA_M = (3.0, 3.0, 5.0)
 """A GNSS fix without a sigma."""
 ALTITUDE_SIGMA_M = 1.0
+ABSOLUTE_SHARED = 0.5
+FIX_MEMORY_S, FIX_MEMORY_M, HEIGHT_MEMORY_S = 60.0, 10.0, 30.0
+"""Half of the variance of a fix or a height stays for so long, or for so much of a way: satellites' paths
+around a house while one stands at its door; draught and weather, by which an altimeter is off."""
 PRESSURE_SIGMA_M = 1.0
 PRESSURE_CORRELATION_S = 30.0
 """Draught and doors move pressure for about so long: readings within it share their error."""

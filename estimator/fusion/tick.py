@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.entering import beginnings, introduce
+from estimator.fusion.entering import beginnings, introduce, retold
 from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.fusion.motion.free import move_free
@@ -55,7 +55,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         elif isinstance(reading, Displacement):
             displacements.append(reading)
         elif isinstance(reading, Node):
-            introduce.introduce(state, reading)
+            holds += retold.take(state, reading)
         elif isinstance(reading, Retire):
             retired.append(reading)
         elif isinstance(reading, Samples):
@@ -96,12 +96,30 @@ def _fold(
         unwaited: nodes for whose displacements nothing waits.
     """
     singles: list[Single] = []
+    holds = _begin_at_fixes(state, holds)
     move_units(state, displacements, singles)
     ready = _covered(state, holds, late_t, unwaited)
     for part in _parts(state, ready):
         if part or singles:
             _hold(state, part, singles)
             singles = []
+
+
+def _begin_at_fixes(state: FusionState, readings: Sequence[AnyHeld]) -> list[AnyHeld]:
+    """Let those begin whose first place a fix tells: they are not taken to be at the base first.
+
+    Returns:
+        The readings that are still to be held.
+    """
+    others: list[AnyHeld] = []
+    for reading in readings:
+        node = state.nodes.get(reading.node) if isinstance(reading, Position) else None
+        unplaced = isinstance(reading, Position) and (node is None or node.mode == "undecided")
+        if isinstance(reading, Position) and unplaced:
+            held.fix(state, reading)
+        else:
+            others.append(reading)
+    return others
 
 
 def _covered(
@@ -251,7 +269,8 @@ def _carry(state: FusionState, until: Mapping[str, float]) -> None:
 def _drop(state: FusionState, reading: Drop) -> bool:
     """Let a breadcrumb lie where its bearer stands; False where that is not known, or it lies already."""
     by = state.node_of(reading.by, "responder", reading.t)
-    if by.mode == "undecided" and by.role in MOVING_ROLES:
+    waits = introduce.waits_for_ranges(state, by, reading.t)
+    if by.mode == "undecided" and by.role in MOVING_ROLES and not waits:
         introduce.begin_at_base(state, by, reading.t)
         by = state.nodes[reading.by]
     if not by.decided:

@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
+from estimator.fusion.entering.anew import hear_ranges
 from estimator.fusion.entering.technologies import REACH
 from estimator.fusion.learned.links import ERROR, KEPT, SAME_PLACE
 from estimator.fusion.learned.noise import near_dbm
@@ -44,6 +45,7 @@ def update(state: FusionState, table: Array) -> None:
     # is not to wait.
     if odd(table, found.good, state.links.table, found.doubted):
         state.suspected = True
+    hear_ranges(state, table, found.good)
     _learn(state, table, found)
 
 

@@ -47,6 +47,9 @@ def settle(state: FusionState, layout: Layout, solved: Solved, matrix: Array) ->
     order = [v for v in graph.starts if v in columns]
     if len(order) != len(graph.starts):
         raise ValueError("the window does not hold all that the filter holds")
+    if not order:
+        # All have left.
+        return
     kept = np.concatenate([columns[v] for v in order])
     nothing = np.zeros(len(matrix))
     left, rest = marginalised(matrix, nothing, np.concatenate([*gone, NONE]), kept)

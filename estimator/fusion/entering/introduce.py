@@ -19,15 +19,20 @@ from estimator.measurements.node import MOVING_ROLES, Node
 NO_PRIOR_SIGMA_M = 1e3
 
 
-def introduce(state: FusionState, reading: Node) -> None:
-    """Take in a `node` reading: a new node, a name for a guessed one, or news of a known one."""
+def introduce(state: FusionState, reading: Node) -> bool:
+    """Take in a `node` reading: a new node, a name for a guessed one, or news of a known one.
+
+    Returns:
+        Whether the node is what the reading says that it is, and where.
+    """
     known = state.nodes.get(reading.node)
     if known is None:
         number = state.number(reading.node)
         node = NodeState(node=reading.node, role=reading.role, named=True, t=reading.t, index=number)
     elif known.role != reading.role and not _may_become(state, known, reading):
-        return
+        return False
     else:
+        known = state.nodes[reading.node]
         # Of who has a place a name is no news: his fix is as old as it was.
         since_t = known.t if known.decided else max(known.t, reading.t)
         node = replace(known, role=reading.role, named=True, t=since_t)
@@ -38,16 +43,26 @@ def introduce(state: FusionState, reading: Node) -> None:
     state.nodes[node.node] = node
     if node.mode == "undecided":
         _place_new(state, node, reading)
-    elif reading.position_m is not None and node.mode in ("fixed", "retired"):
-        if node.place_m != reading.position_m:
-            state.say("conflict", reading.t, node.node, f"{node.node} is {node.mode} and is not moved")
-        return
-    state.count("fused")
+    elif node.mode in ("fixed", "retired") and reading.position_m not in (None, node.place_m):
+        state.say("conflict", reading.t, node.node, f"{node.node} is {node.mode} and is not moved")
+        state.count("not_fused")
+        return False
+    return True
 
 
 def _may_become(state: FusionState, known: NodeState, reading: Node) -> bool:
     if not known.named and known.mode == "undecided":
         state.sightings.pop(known.node, None)
+        return True
+    if not known.named and known.mode == "static" and reading.role in MOVING_ROLES:
+        # Guessed from readings that came before its introduction: they tell where it sets out from.
+        where, rows = state.graph.value(known.position).tolist(), state.graph.rows(known.position)
+        own = np.sqrt(np.diag(state.graph.covariance()[rows, rows]))
+        state.graph.delete_nodes([known.position])
+        anew = replace(
+            known, role=reading.role, mode="undecided", index=state.number(known.node), otherwise=()
+        )
+        place(state, anew, reading.t, where, np.hypot(own, physics.ENTRY_SIGMA_M).tolist())
         return True
     both_move = known.role in MOVING_ROLES and reading.role in MOVING_ROLES
     both_stand = not {known.role, reading.role} & (MOVING_ROLES | {"base"})
@@ -64,12 +79,15 @@ def _place_new(state: FusionState, node: NodeState, reading: Node) -> None:
         where = reading.position_m or (0.0, 0.0, 0.0)
         state.nodes[node.node] = replace(node, mode="fixed", place_m=where)
     elif reading.position_m is not None:
-        sigma = reading.sigma_m or {
-            "anchor": physics.ANCHOR_SIGMA_M,
-            "responder": physics.SURVEY_SIGMA_M,
-            "uav": physics.FIX_SIGMA_M[0],
-        }.get(reading.role, physics.SURVEY_SIGMA_M)
+        sigma = told_sigma_m(reading)
+        node = replace(node, absolute=replace(node.absolute, told_m=reading.position_m))
         place(state, node, reading.t, reading.position_m, (sigma, sigma, sigma))
+
+
+def told_sigma_m(reading: Node) -> float:
+    """Standard deviation of a told position along each axis (m)."""
+    usual = {"anchor": physics.ANCHOR_SIGMA_M, "uav": physics.FIX_SIGMA_M[0]}
+    return reading.sigma_m or usual.get(reading.role, physics.SURVEY_SIGMA_M)
 
 
 class Entered(NamedTuple):
@@ -123,7 +141,8 @@ def place(
 
 def begin_at_base(state: FusionState, node: NodeState, t: float) -> None:
     """A responder whose first position nobody gave enters at the base: 3 m horizontally, 1 m in height."""
-    place(state, node, t, state.base_place(), physics.ENTRY_SIGMA_M)
+    assumed = replace(node, absolute=replace(node.absolute, assumed=True))
+    place(state, assumed, t, state.base_place(), physics.ENTRY_SIGMA_M)
 
 
 def waits_for_ranges(state: FusionState, node: NodeState, t: float) -> bool:

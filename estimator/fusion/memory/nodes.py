@@ -9,6 +9,7 @@ from estimator.estimate import Covariance6, Vector3
 from estimator.fusion.images import Otherwise
 from estimator.fusion.learned.calibration import UNTOLD, Told
 from estimator.fusion.learned.standing import Standing
+from estimator.fusion.memory.absolute import Absolute
 from estimator.graph.variable import Variable
 from estimator.measurements.node import Role
 
@@ -38,6 +39,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         trail: epochs, and displacements summed up to them in the unit's frame: newest seconds only.
         still: headings that its unit has reported since it stands still.
         way_m: length of its way so far.
+        absolute: what fixes, heights and `node` readings have told of its place.
         pressure_t: epoch of its newest fused pressure.
         heights: heights have been told of it, by a fix, an altimeter or an air pressure.
         level: its unit has never reported a change of height.
@@ -65,6 +67,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     trail: tuple[tuple[float, float, float, float], ...] = ()
     still: Standing | None = None
     way_m: float = 0.0
+    absolute: Absolute = Absolute()
     pressure_t: float | None = None
     heights: bool = False
     level: bool = True

@@ -98,7 +98,7 @@ class Step:
         own = max(t - start, 0.0)
         length = math.sqrt(e * e + n * n + u * u)
         across = up = 0.0
-        if start < pose_t and unit_t is not None:
+        if start < pose_t:
             share = duration / own
             across = up = (0.5 * share * (1.0 - share) * length) ** 2
             e, n, u, length, own = e * share, n * share, u * share, length * share, duration

@@ -4,7 +4,9 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
+from estimator.fusion.entering.anew import hear_fix
 from estimator.fusion.entering.introduce import place
+from estimator.fusion.memory.absolute import Absolute
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.swings import unbend
@@ -29,18 +31,26 @@ def fix(state: FusionState, reading: Position) -> list[Single]:
     if position is None or not _takes(state, node, reading.t, "fix"):
         return []
     sigma = reading.sigma_m or physics.FIX_SIGMA_M
+    alike = node.absolute.fixes.with_one(
+        reading.t, _way_m(state, node, reading.t), physics.FIX_MEMORY_S, physics.FIX_MEMORY_M
+    )
+    node = _told(state, node, replace(node.absolute, fixes=alike))
     if node.mode == "undecided":
         place(state, node, reading.t, position, sigma)
         state.count("fused")
         return []
     state.count("fused")
     singles, offset = [], offset_of(state, node, reading.t)
+    if node.moving:
+        here = state.place(node)
+        off_m = [position[i] - offset[i] - float(here[i]) for i in range(2)]
+        node = hear_fix(state, node, off_m, max(*sigma[:2], physics.SIGMA_FLOOR_M))
     _tell_heights(state, node.node)
     if node.turned:
         # A fix on the arc would seem to be far off its tangent.
         unbend(state, node)
     for i in range(3):
-        spread = max(sigma[i], physics.SIGMA_FLOOR_M)
+        spread = alike.sigma(max(sigma[i], physics.SIGMA_FLOOR_M), physics.ABSOLUTE_SHARED)
         _enter_single(state, node, reading.t, i, position[i], spread, physics.FIX_NOISE)
         if node.turned and i < 2:
             spread = float(np.hypot(spread, turned_m(offset)))
@@ -67,14 +77,32 @@ def height(state: FusionState, reading: Altitude | Pressure) -> list[Single]:
         state.say("not_fused", reading.t, node.node, text, once="no reference pressure")
         state.count("not_fused")
         return []
+    sigma, noise = max(sigma, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE
     if isinstance(reading, Pressure):
         state.nodes[node.node] = replace(node, pressure_t=reading.t)
+    else:
+        alike = node.absolute.heights.with_one(reading.t, 0.0, physics.HEIGHT_MEMORY_S)
+        _told(state, node, replace(node.absolute, heights=alike))
+        sigma = alike.sigma(sigma, physics.ABSOLUTE_SHARED)
     state.count("fused")
-    sigma, noise = max(sigma, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE
     _tell_heights(state, node.node)
     _enter_single(state, node, reading.t, 2, up, sigma, noise)
     up -= offset_of(state, node, reading.t)[2]
     return [Single(node.position, 2, up, sigma, noise)]
+
+
+def _way_m(state: FusionState, node: NodeState, t: float) -> float:
+    """How far a node has gone by `t`: by its unit, or as fast as it seems to be since its newest fix (m)."""
+    known = node.absolute.fixes
+    if node.mode != "free" or known.t is None:
+        return node.way_m
+    return known.way_m + float(np.linalg.norm(state.graph.value(node.velocity))) * abs(t - known.t)
+
+
+def _told(state: FusionState, node: NodeState, known: Absolute) -> NodeState:
+    """The node with what is known of what was told of its place."""
+    state.nodes[node.node] = replace(node, absolute=known)
+    return state.nodes[node.node]
 
 
 def _tell_heights(state: FusionState, name: str) -> None:

@@ -19,6 +19,7 @@ from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.silence import SILENT_S
 from estimator.fusion.motion.way import End, Mark, end_of, table_of_marks
 from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.rows.rows import FIELDS, table_from
@@ -181,7 +182,9 @@ class Pairs:
         if reading.frame == "body":
             node = a.node
             known = node.unit_heading_rad if node.mode == "unit" else node.heading_rad
-            if known is None or node.mode == "free":
+            silent = node.mode == "unit" and reading.t > (node.unit_t or node.pose_t) + SILENT_S
+            if known is None or node.mode == "free" or silent:
+                # Since a unit fell silent its bearer may have turned.
                 text = f"{node.node} has no heading: its bearings in the body frame are set aside"
                 state.say("not_fused", reading.t, node.node, text, once=f"bearing from {node.node}")
                 state.count("not_fused")

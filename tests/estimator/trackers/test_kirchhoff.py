@@ -167,6 +167,16 @@ def test_a_retired_node_keeps_its_last_estimate() -> None:
     assert there.position_m == pytest.approx(then.position_m, abs=0.5)
 
 
+def test_when_all_have_left_the_picture_stands_and_nothing_is_said_of_it() -> None:
+    entered = Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.3)
+    walk = [Displacement(t=float(t), node="ff1", delta_m=(1.0, 0.0, 0.0)) for t in range(1, 31)]
+    tracker = folded([Node(t=0.0, node="base", role="base"), entered, *walk, Retire(t=31.0, node="ff1")])
+    for t in range(32, 120):
+        tracker.fold([Range(t=float(t), a="base", b="beacon", range_m=5.0)])
+    assert estimate(tracker, "ff1").position_m == pytest.approx((30.0, 0.0, 0.0), abs=1.0)
+    assert [notice.text for notice in tracker.take_notices() if notice.code == "unsolved"] == []
+
+
 @pytest.mark.parametrize(
     ("reading", "code"),
     [

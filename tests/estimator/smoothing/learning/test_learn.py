@@ -46,9 +46,12 @@ def walked(seconds: int, factors: tuple[float, float], seed: int = 1) -> FusionS
     state = FusionState()
     state.ledger = Ledger(complete=True)
     fold_tick(state, 0.5, readings[:1])
-    for second in range(1, seconds + 1):
-        fold_tick(state, float(second), [r for r in readings[1:] if second - 1.0 < r.t <= second])
-    flush(state)
+    with pytest.MonkeyPatch.context() as here:
+        # These fixes share nothing.
+        here.setattr(physics, "ABSOLUTE_SHARED", 0.0)
+        for second in range(1, seconds + 1):
+            fold_tick(state, float(second), [r for r in readings[1:] if second - 1.0 < r.t <= second])
+        flush(state)
     keep_poses(state)
     return state
 

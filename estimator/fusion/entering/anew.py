@@ -1,0 +1,109 @@
+"""Who begins anew, for what was believed of his beginning was wrong.
+
+A beginning is a Gaussian, all readings are robust: a hundred fixes that contradict it would be outliers, for
+ever. It is let go of where they are surer than it was: by the first one where nobody had told it, else when
+more fixes agree on another place than ever fitted.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from msgspec.structs import replace
+
+from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M
+from estimator.fusion.learned.links import SAME_PLACE
+from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.rows import rows
+from estimator.graph.dense import Array
+
+CONTRADICTED = 20.0
+"""Squared error by what is said: one true place in 20,000 is farther off."""
+SURE_SIGMAS = 4.0
+"""What is nearer than so many of its own sigmas is not asked further."""
+MORE = 3
+"""So many more fixes than ever fitted have to agree on another place."""
+SAME_SIGMAS = 4.0
+SET_OFF_M = 5.0
+"""Of who has walked no farther what is told of his beginning is still news: his introduction came late."""
+
+
+def hear_fix(state: FusionState, node: NodeState, off_m: Sequence[float], sigma_m: float) -> NodeState:
+    """Hold a fix against where somebody seems to be, and let him begin anew where it is to be believed.
+
+    Args:
+        state: the fusion, changed in place.
+        node: who moves.
+        off_m: how far the fix is off, east and north (m).
+        sigma_m: its standard deviation along each (m).
+
+    Returns:
+        The node after it.
+    """
+    east, north = off_m
+    fits = (
+        math.hypot(east, north) < SURE_SIGMAS * sigma_m
+        or error_of(state, node, off_m, sigma_m) < CONTRADICTED
+    )
+    known = node.absolute.with_fix(fits, (east, north), SAME_SIGMAS * sigma_m)
+    needed = 1 if known.assumed and node.way_m < SET_OFF_M else known.fits + MORE
+    if fits:
+        known = replace(known, assumed=False)
+    elif known.against >= needed and let_go(state, node, height=True):
+        known = replace(known, assumed=False, fits=0, against=0)
+    node = replace(node, absolute=known)
+    state.nodes[node.node] = node
+    return node
+
+
+def hear_ranges(state: FusionState, table: Array, good: Array) -> None:
+    """Let those begin anew that were taken to be at the base, where no range from there is believed.
+
+    Args:
+        state: the fusion, changed in place.
+        table: readings that have been held, m × `rows.FIELDS`.
+        good: probability that each has the good noise, m.
+    """
+    for node in [node for node in state.nodes.values() if node.absolute.assumed and node.moving]:
+        start = state.graph.starts[node.position]
+        mine = (table[:, rows.KIND] == RANGE) & ((table[:, rows.A] == start) | (table[:, rows.B] == start))
+        if mine.sum() < MORE:
+            continue
+        believed = bool((good[mine] > SAME_PLACE).any())
+        if believed or let_go(state, node, height=False):
+            known = replace(node.absolute, assumed=False)
+            state.nodes[node.node] = replace(node, absolute=known)
+
+
+def let_go(state: FusionState, node: NodeState, height: bool) -> bool:
+    """Forget where somebody who moves began, in the ledger and in the filter; his own way stays.
+
+    Args:
+        state: the fusion, changed in place.
+        node: who moves.
+        height: of his height as well.
+
+    Returns:
+        Whether that is still possible: later his beginning is part of what the window knows from before.
+    """
+    if state.prior is not None and {("walk", node.index), ("free", node.index)} & set(state.prior.keys):
+        return False
+    begins = state.ledger.table("begins").copy()
+    mine = (begins[:, 1] == node.index) & (begins[:, 2] == 0.0)
+    axes = 3 if height else 2
+    begins[mine, 7 : 7 + axes] = NO_PRIOR_SIGMA_M
+    state.ledger.replace("begins", begins)
+    here = (state.graph.starts[node.position] + np.arange(axes))[None]
+    still = np.eye(axes)[None]
+    state.graph.advance(here, state.graph.reference[here], still, still * NO_PRIOR_SIGMA_M**2)
+    state.due = True
+    return True
+
+
+def error_of(state: FusionState, node: NodeState, off_m: Sequence[float], sigma_m: float) -> float:
+    """Squared error of a fix by what is said of both (dimensionless)."""
+    first = state.graph.starts[node.position]
+    said = state.graph.covariance()[first : first + 2, first : first + 2] + sigma_m**2 * np.eye(2)
+    return float(np.asarray(off_m) @ np.linalg.solve(said, off_m))

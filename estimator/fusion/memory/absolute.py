@@ -1,0 +1,93 @@
+"""What fixes, heights and `node` readings have told of where a node is."""
+
+import math
+from typing import Self
+
+import msgspec
+from msgspec.structs import replace
+
+from estimator.estimate import Vector3
+from estimator.fusion.learned.noise import single_sigma
+
+
+class Alike(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """How many readings of one kind share an error that stays for some time.
+
+    Attributes:
+        t: epoch of the newest one (s); None: there is none yet.
+        way_m: how far its node had gone by then (m).
+        kept: how much of the error before still held, 0 to 1.
+        count: how many share its error, itself included.
+    """
+
+    t: float | None = None
+    way_m: float = 0.0
+    kept: float = 0.0
+    count: float = 0.0
+
+    def with_one(self, t: float, way_m: float, memory_s: float, memory_m: float = math.inf) -> Self:
+        """After one more.
+
+        Args:
+            t: its epoch (s).
+            way_m: how far its node has gone by then (m).
+            memory_s: within so much time an error is forgotten (s).
+            memory_m: within so much of a way (m).
+        """
+        waited_s = math.inf if self.t is None else abs(t - self.t)
+        kept = math.exp(-waited_s / memory_s - abs(way_m - self.way_m) / memory_m)
+        return type(self)(t, way_m, kept, 1.0 + kept * self.count)
+
+    def sigma(self, sigma: float, shared: float) -> float:
+        """Standard deviation to give to the newest one.
+
+        k readings that share an error are worth k / (w + k c) together, with w the variance of each alone
+        and c the common one. Where it is forgotten as fast as it is read anew, each is worth what one of a
+        long row is: 1 / (w + c (1 + ρ) / (1 − ρ)), the spectrum of an error that keeps ρ of itself from one
+        reading to the next, at frequency 0.
+
+        Args:
+            sigma: of one reading by itself.
+            shared: share of its variance that it has in common with the others.
+        """
+        common = shared * sigma * sigma
+        white = sigma * sigma - common
+        row = single_sigma(white, common, self.count)
+        if self.kept == 1.0:
+            return row
+        return min(row, math.sqrt(white + common * (1.0 + self.kept) / (1.0 - self.kept)))
+
+
+class Absolute(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What was told of a node's place, not of its distance or step from elsewhere.
+
+    Attributes:
+        assumed: nobody told where it entered: it was taken to be at the base.
+        told_m: where its `node` reading last told it to be (m).
+        fixes: its fixes.
+        heights: its altimeter's readings.
+        fits: fixes that fitted, since it began.
+        against: fixes in a row that agree with each other, and not with where it seems to be.
+        off_m: how far the newest of them is off, east and north (m).
+    """
+
+    assumed: bool = False
+    told_m: Vector3 | None = None
+    fixes: Alike = Alike()
+    heights: Alike = Alike()
+    fits: int = 0
+    against: int = 0
+    off_m: tuple[float, float] = (0.0, 0.0)
+
+    def with_fix(self, fits: bool, off_m: tuple[float, float], same_m: float) -> Self:
+        """After a fix that fits or does not.
+
+        Args:
+            fits: whether it does.
+            off_m: how far it is off, east and north (m).
+            same_m: so far from each other two that are off agree (m).
+        """
+        if fits:
+            return replace(self, fits=self.fits + 1, against=0)
+        again = self.against > 0 and math.dist(off_m, self.off_m) < same_m
+        return replace(self, against=self.against + 1 if again else 1, off_m=off_m)
