@@ -37,7 +37,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     waiting: tuple[AnyHeld, ...]
     noise: dict[str, LearnedNoise]
     links: tuple[list[tuple[str, str, str]], ArrayRecord]
-    reference_pa: float | None
+    reference: tuple[float, float] | None
     counts: dict[str, int]
     said: list[str]
     tried: dict[str, int]
@@ -72,7 +72,7 @@ def record_of(state: FusionState) -> FusionRecord:
         state.waiting,
         dict(state.noise),
         (list(state.links.numbers), pack(state.links.table)),
-        state.reference_pa,
+        state.reference,
         dict(state.counts),
         list(state.said),
         dict(state.tried),
@@ -108,7 +108,7 @@ def state_of(record: FusionRecord) -> FusionState:
     state.graph = Kirchhoff.of(record.variables, matrix, vector, reference)
     state.nodes = {n.node: n for n in record.nodes}
     state.sightings, state.waiting = record.sightings, record.waiting
-    state.noise, state.reference_pa, state.counts = record.noise, record.reference_pa, record.counts
+    state.noise, state.reference, state.counts = record.noise, record.reference, record.counts
     state.said, state.tried = dict.fromkeys(record.said), record.tried
     links, newest = record.links
     state.links = Links({link: number for number, link in enumerate(links)}, unpack(newest))

@@ -38,7 +38,7 @@ class FusionState:
         waiting: readings whose epoch no displacement has covered yet.
         noise: what was learned of each technology's noise.
         links: the newest reading of each technology between two nodes.
-        reference_pa: the base's newest air pressure.
+        reference: newest air pressure of a base (Pa), and how high that base stands (m).
         counts: readings fused, not fused, weighed as outliers.
         said: notices that are given once.
         tried: how many sightings an undecided node had when it was last tried.
@@ -71,7 +71,7 @@ class FusionState:
         self.waiting: tuple[AnyHeld, ...] = ()
         self.noise: dict[str, LearnedNoise] = {}
         self.links = Links()
-        self.reference_pa: float | None = None
+        self.reference: tuple[float, float] | None = None
         self.counts: dict[str, int] = {"fused": 0, "not_fused": 0, "outlier": 0}
         self.said: dict[str, None] = {}
         self.tried: dict[str, int] = {}

@@ -62,7 +62,8 @@ def height(state: FusionState, reading: Altitude | Pressure) -> list[Single]:
     """What a height says, or of an air pressure over the base's own."""
     node = state.nodes.get(reading.node)
     if isinstance(reading, Pressure) and node is not None and node.role == "base":
-        state.reference_pa = reading.pressure_pa
+        place_m = node.place_m or state.base_place()
+        state.reference = reading.pressure_pa, place_m[2]
         state.count("fused")
         return []
     node = state.node_of(reading.node, "responder", reading.t)
@@ -119,16 +120,17 @@ def _enter_single(
 def _height(state: FusionState, node: NodeState, reading: Altitude | Pressure) -> tuple[float | None, float]:
     if isinstance(reading, Altitude):
         return reading.up_m, reading.sigma_m or physics.ALTITUDE_SIGMA_M
-    if state.reference_pa is None:
+    if state.reference is None:
         return None, 0.0
-    above = height_above(state.reference_pa, reading.pressure_pa)
+    reference_pa, reference_m = state.reference
+    above = height_above(reference_pa, reading.pressure_pa)
     sigma = np.hypot(reading.sigma_m or physics.PRESSURE_SIGMA_M, physics.LAYER_SIGMA * above)
     if node.pressure_t is not None:
         # Pressures soon after each other share their error: together they may weigh as one per correlation
         # time.
         since = np.clip(reading.t - node.pressure_t, 0.01, physics.PRESSURE_CORRELATION_S)
         sigma *= np.sqrt(physics.PRESSURE_CORRELATION_S / since)
-    return state.base_place()[2] + above, float(sigma)
+    return reference_m + above, float(sigma)
 
 
 def _takes(state: FusionState, node: NodeState, t: float, what: str) -> bool:
