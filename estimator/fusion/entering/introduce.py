@@ -62,7 +62,10 @@ def _may_become(state: FusionState, known: NodeState, reading: Node) -> bool:
         anew = replace(
             known, role=reading.role, mode="undecided", index=state.number(known.node), otherwise=()
         )
-        place(state, anew, reading.t, where, np.hypot(own, physics.ENTRY_SIGMA_M).tolist())
+        if reading.position_m is None:
+            place(state, anew, reading.t, where, np.hypot(own, physics.ENTRY_SIGMA_M).tolist())
+        else:
+            state.nodes[known.node] = anew
         return True
     both_move = known.role in MOVING_ROLES and reading.role in MOVING_ROLES
     both_stand = not {known.role, reading.role} & (MOVING_ROLES | {"base"})
@@ -141,7 +144,7 @@ def place(
 
 def begin_at_base(state: FusionState, node: NodeState, t: float) -> None:
     """A responder whose first position nobody gave enters at the base: 3 m horizontally, 1 m in height."""
-    assumed = replace(node, absolute=replace(node.absolute, assumed=True))
+    assumed = replace(node, absolute=replace(node.absolute, beginning="assumed"))
     place(state, assumed, t, state.base_place(), physics.ENTRY_SIGMA_M)
 
 
@@ -172,7 +175,7 @@ def attach_unit(state: FusionState, node: NodeState, unit_heading_rad: float | N
     nothing = (0.0,) * 6
     state.ledger.add("begins", node.pose_t, node.index, 1.0, uav, *nothing, turn, sigma[0])
     turned = sigma[0] > physics.TURNED_SIGMA_RAD
-    state.nodes[node.node] = replace(node, mode="unit", turned=turned)
+    state.nodes[node.node] = replace(node, mode="unit", turned=turned, first_heading_rad=unit_heading_rad)
 
 
 def turn_sigma(node: NodeState) -> float:

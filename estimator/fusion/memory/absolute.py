@@ -1,13 +1,14 @@
 """What fixes, heights and `node` readings have told of where a node is."""
 
 import math
-from typing import Self
+from typing import Literal, Self
 
 import msgspec
 from msgspec.structs import replace
 
 from estimator.estimate import Vector3
 from estimator.fusion.learned.noise import single_sigma
+from estimator.fusion.physics import TICK_S
 
 
 class Alike(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -58,36 +59,46 @@ class Alike(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return min(row, math.sqrt(white + common * (1.0 + self.kept) / (1.0 - self.kept)))
 
 
+Beginning = Literal["sure", "assumed", "fix"]
+"""What tells where somebody began: a gateway, or later readings that agree; nobody, so it was taken to be at
+the base; a single fix."""
+
+
 class Absolute(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What was told of a node's place, not of its distance or step from elsewhere.
 
     Attributes:
-        assumed: nobody told where it entered: it was taken to be at the base.
-        told_m: where its `node` reading last told it to be (m).
+        beginning: what tells where it began.
+        told_m: where its `node` reading told it to be (m).
         fixes: its fixes.
         heights: its altimeter's readings.
-        fits: fixes that fitted, since it began.
-        against: fixes in a row that agree with each other, and not with where it seems to be.
+        fits: seconds with a fix that fitted, while its beginning is not sure.
+        against: such seconds in a row with fixes that agree with each other, not with where it seems to be.
         off_m: how far the newest of them is off, east and north (m).
+        counted_t: epoch of the newest fix that was counted (s): copies of one are one.
     """
 
-    assumed: bool = False
+    beginning: Beginning = "sure"
     told_m: Vector3 | None = None
     fixes: Alike = Alike()
     heights: Alike = Alike()
     fits: int = 0
     against: int = 0
     off_m: tuple[float, float] = (0.0, 0.0)
+    counted_t: float = -math.inf
 
-    def with_fix(self, fits: bool, off_m: tuple[float, float], same_m: float) -> Self:
+    def with_fix(self, t: float, fits: bool, off_m: tuple[float, float], same_m: float) -> Self:
         """After a fix that fits or does not.
 
         Args:
+            t: its epoch (s).
             fits: whether it does.
             off_m: how far it is off, east and north (m).
             same_m: so far from each other two that are off agree (m).
         """
+        if t < self.counted_t + TICK_S:
+            return self
         if fits:
-            return replace(self, fits=self.fits + 1, against=0)
+            return replace(self, fits=self.fits + 1, against=0, counted_t=t)
         again = self.against > 0 and math.dist(off_m, self.off_m) < same_m
-        return replace(self, against=self.against + 1 if again else 1, off_m=off_m)
+        return replace(self, against=self.against + 1 if again else 1, off_m=off_m, counted_t=t)

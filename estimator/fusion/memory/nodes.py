@@ -34,6 +34,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         covariance_m2: of `place_m`, where it is retired.
         heading_rad: as told by its `node` reading.
         heading_sigma_rad: as told by its `node` reading.
+        first_heading_rad: heading that its unit reported first, in the unit's frame.
         unit_heading_rad: newest heading that its unit reported, in the unit's frame.
         speed_mps: horizontal speed by its newest displacement.
         trail: epochs, and displacements summed up to them in the unit's frame: newest seconds only.
@@ -62,6 +63,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     covariance_m2: Covariance6 | None = None
     heading_rad: float | None = None
     heading_sigma_rad: float | None = None
+    first_heading_rad: float | None = None
     unit_heading_rad: float | None = None
     speed_mps: float | None = None
     trail: tuple[tuple[float, float, float, float], ...] = ()

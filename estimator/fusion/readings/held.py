@@ -36,6 +36,7 @@ def fix(state: FusionState, reading: Position) -> list[Single]:
     )
     node = _told(state, node, replace(node.absolute, fixes=alike))
     if node.mode == "undecided":
+        node = _told(state, node, replace(node.absolute, beginning="fix", counted_t=reading.t))
         place(state, node, reading.t, position, sigma)
         state.count("fused")
         return []
@@ -44,13 +45,15 @@ def fix(state: FusionState, reading: Position) -> list[Single]:
     if node.moving:
         here = state.place(node)
         off_m = [position[i] - offset[i] - float(here[i]) for i in range(2)]
-        node = hear_fix(state, node, off_m, max(*sigma[:2], physics.SIGMA_FLOOR_M))
+        node = hear_fix(state, node, reading.t, off_m, max(*sigma[:2], physics.SIGMA_FLOOR_M))
     _tell_heights(state, node.node)
     if node.turned:
         # A fix on the arc would seem to be far off its tangent.
         unbend(state, node)
+    # Who flies is above what bends the paths of satellites.
+    shared = 0.0 if node.role in physics.OUTSIDE_ROLES else physics.ABSOLUTE_SHARED
     for i in range(3):
-        spread = alike.sigma(max(sigma[i], physics.SIGMA_FLOOR_M), physics.ABSOLUTE_SHARED)
+        spread = alike.sigma(max(sigma[i], physics.SIGMA_FLOOR_M), shared)
         _enter_single(state, node, reading.t, i, position[i], spread, physics.FIX_NOISE)
         if node.turned and i < 2:
             spread = float(np.hypot(spread, turned_m(offset)))

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from estimator.estimate import TrackPoint
-from estimator.fusion.entering.introduce import tuple_of, upper_triangle
+from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, tuple_of, upper_triangle
 from estimator.fusion.motion.free import free_motion
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.layout import Layout, Walk
@@ -46,13 +46,13 @@ def tracks(
         since = max(drops.get(number, first), first) if name in found or number in drops else first
         came_t, left_t = lay.get(number, (-math.inf, math.inf))
         since = max(since, came_t)
-        points = [p for p in found.get(name, []) if p.t < since]
-        points += [
+        others = found.get(name, [])
+        stood = [
             TrackPoint(t=float(t), position_m=place, covariance_m2=covariance)
             for t in range(math.ceil(min(since, last + 1.0)), math.floor(last) + 1)
             if t < left_t
         ]
-        found[name] = points
+        found[name] = [*(p for p in others if p.t < since), *stood, *(p for p in others if p.t >= left_t)]
     for node in layout.state.nodes.values():
         if node.role == "base" and node.place_m is not None:
             first, last = lifetimes[node.node]
@@ -71,7 +71,10 @@ def _lay(layout: Layout, drops: Mapping[int, float]) -> dict[int, tuple[float, f
         drops: epochs of drops, by number (s).
     """
     pairs, owners = layout.state.ledger.table("pairs"), layout.state.owners
-    stood = {*layout.state.ledger.table("stands")[:, 1].tolist(), *np.unique(pairs[:, 2:4]).tolist()}
+    ledger = layout.state.ledger
+    told = {int(row[1]): float(row[0]) for row in ledger.table("stands") if row[5] < NO_PRIOR_SIGMA_M}
+    told |= {int(row[1]): float(row[0]) for row in ledger.table("begins")[::-1]}
+    stood = {*ledger.table("stands")[:, 1].tolist(), *np.unique(pairs[:, 2:4]).tolist(), *told}
     found: dict[int, tuple[float, float]] = {}
     last_of: dict[str, int] = {}
     for number, name in enumerate(owners):
@@ -81,6 +84,7 @@ def _lay(layout: Layout, drops: Mapping[int, float]) -> dict[int, tuple[float, f
         if name in last_of:
             own = pairs[(pairs[:, 2] == number) | (pairs[:, 3] == number), 0]
             moved_t = drops.get(number, float(own.min()) if len(own) else math.inf)
+            moved_t = min(moved_t, told.get(number, math.inf))
             before = last_of[name]
             found[before] = found.get(before, (-math.inf, math.inf))[0], moved_t
             found[number] = moved_t, math.inf

@@ -2,52 +2,25 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Literal
 
 import numpy as np
 import pytest
 
-from estimator.estimate import NodeEstimate
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude
 from estimator.measurements.bearing import Bearing
-from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop
 from estimator.measurements.node import Node
 from estimator.measurements.position import Position
 from estimator.measurements.range import Range
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.trackers.entry import BASE, PACE_M, off_m, shown, squared_error, step
 
-PACE_M = (0.8, 0.3)
 SURE_AND_WRONG = 20.0
 FIX_SIGMA_M = (1.0, 1.0, 2.0)
-BASE = Node(t=0.0, node="base", role="base", position_m=(0.0, 0.0, 0.0))
 
 More = Callable[[float, Array], Sequence[AnyReading]]
-
-
-def step(t: float, delta_m: Sequence[float] = (*PACE_M, 0.0)) -> Displacement:
-    east, north, up = delta_m
-    return Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=(east, north, up), heading_rad=0.0)
-
-
-def shown(tracker: KirchhoffTracker, node: str = "ff1") -> NodeEstimate:
-    return next(estimate for estimate in tracker.estimates() if estimate.node == node)
-
-
-def squared_error(found: NodeEstimate, at_m: Sequence[float] | Array) -> float:
-    """Of his place, in what is said of it."""
-    assert found.position_m is not None
-    assert found.covariance_m2 is not None
-    ee, en, _, nn, *_ = found.covariance_m2
-    off = np.array(found.position_m[:2]) - np.array(at_m[:2])
-    return float(off @ np.linalg.solve(np.array([[ee, en], [en, nn]]), off))
-
-
-def off_m(found: NodeEstimate, at_m: Sequence[float] | Array) -> float:
-    assert found.position_m is not None
-    return math.dist(found.position_m[:2], at_m[:2])
 
 
 def seconds_wrong(began: Sequence[AnyReading], start_m: float, more: More, seconds: int = 40) -> list[int]:
@@ -137,58 +110,36 @@ def test_a_drop_does_not_put_him_at_the_origin_who_waits_for_ranges() -> None:
     assert off_m(shown(tracker), at) < 1.0
 
 
-class TestToldAgain:
-    """A `node` reading that comes after somebody has begun."""
+@pytest.mark.parametrize("copies", [1, 3])
+def test_no_gateways_copies_of_one_bad_fix_take_anybody_from_where_he_was_told_to_enter(copies: int) -> None:
+    entered = Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.5)
 
-    def test_where_he_stands(self) -> None:
-        tracker = KirchhoffTracker()
-        tracker.fold([BASE, step(1.0, (0.0, 0.0, 0.0))])
-        tracker.fold([Node(t=3.0, node="ff1", role="responder", position_m=(60.0, 0.0, 0.0), sigma_m=0.3)])
-        for second in range(4, 14):
-            tracker.fold([step(float(second), (1.0, 0.0, 0.0))])
-        assert off_m(shown(tracker), (70.0, 0.0)) < 1.0
+    def told(t: float, at: Array) -> list[AnyReading]:
+        east, north = at.tolist()
+        bad = Position(t=t, node="ff1", position_m=(east, north + 60.0, 0.0), sigma_m=FIX_SIGMA_M)
+        return [bad] * copies if t == 30.0 else []
 
-    def test_what_he_faces(self) -> None:
-        entered = Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.3)
-        north = Node(t=3.0, node="ff1", role="responder", heading_rad=math.pi / 2, heading_sigma_rad=0.05)
-        tracker = KirchhoffTracker()
-        tracker.fold([BASE, entered, step(1.0, (0.0, 0.0, 0.0))])
-        tracker.fold([north])
-        for second in range(4, 34):
-            tracker.fold([step(float(second), (1.0, 0.0, 0.0))])
-        assert off_m(shown(tracker), (0.0, 30.0)) < 2.0
-        assert tracker.take_notices() == []
+    assert seconds_wrong([BASE, entered], 0.0, told) == []
 
-    def test_too_late_what_he_faced_is_refused_and_said_so(self) -> None:
-        tracker = KirchhoffTracker()
-        tracker.fold([BASE, *(step(float(second), (1.0, 0.0, 0.0)) for second in range(1, 20))])
-        before = shown(tracker)
-        tracker.fold([Node(t=19.5, node="ff1", role="responder", heading_rad=math.pi / 2)])
-        assert before.position_m is not None
-        assert off_m(shown(tracker), before.position_m) < 0.5
-        assert [notice.code for notice in tracker.take_notices()] == ["conflict"]
 
-    def test_an_introduction_repeated_is_no_news(self) -> None:
-        entered = Node(t=0.0, node="ff1", role="responder", position_m=(5.0, 0.0, 0.0), sigma_m=0.3)
-        tracker = KirchhoffTracker()
-        tracker.fold([BASE, entered, *(step(float(s), (1.0, 0.0, 0.0)) for s in range(1, 31))])
-        again = Node(t=30.5, node="ff1", role="responder", position_m=(5.0, 0.0, 0.0), sigma_m=0.3)
-        tracker.fold([again, step(31.0, (1.0, 0.0, 0.0))])
-        assert off_m(shown(tracker), (36.0, 0.0)) < 1.0
-
-    @pytest.mark.parametrize("role", ["anchor", "breadcrumb"])
-    def test_a_radio_that_was_carried_elsewhere_lies_there(
-        self, role: Literal["anchor", "breadcrumb"]
-    ) -> None:
-        where = [
-            Node(t=t, node="a1", role=role, position_m=(30.0, north, 0.0))
-            for t, north in ((0.0, 0.0), (99.0, 20.0))
+def test_echoes_on_one_link_unsettle_nobody_who_was_taken_to_be_at_the_base() -> None:
+    def ranged(t: float, at: Array) -> list[AnyReading]:
+        echoes = (9.0, 9.1, 9.2) if t == 35.0 else ()
+        lengths = [float(np.hypot(*at)) + more for more in (0.0, *echoes)[bool(echoes) :]]
+        return [
+            Range(t=t - 0.1 * i, a="ff1", b="base", range_m=length, technology="uwb")
+            for i, length in enumerate(lengths)
         ]
-        tracker = KirchhoffTracker()
-        tracker.fold([BASE, where[0]])
-        tracker.fold([where[1]])
-        assert off_m(shown(tracker, "a1"), (30.0, 20.0)) < 0.1
-        assert [notice.code for notice in tracker.take_notices()] == ["node_moved"]
+
+    tracker, at, widths = KirchhoffTracker(), np.zeros(2), []
+    tracker.fold([BASE])
+    for second in range(1, 60):
+        at = at + PACE_M
+        tracker.fold([step(float(second)), *ranged(float(second), at)])
+        covariance = shown(tracker).covariance_m2
+        assert covariance is not None
+        widths.append(math.sqrt(covariance[0] + covariance[3]))
+    assert max(widths) < 10.0
 
 
 def test_a_radio_that_ranges_have_placed_becomes_the_responder_that_it_is_said_to_be() -> None:

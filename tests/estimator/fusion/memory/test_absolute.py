@@ -60,10 +60,17 @@ def test_who_has_gone_on_has_left_the_error_behind() -> None:
 
 def test_only_fixes_that_agree_with_each_other_add_up_against_a_place() -> None:
     known = Absolute()
-    for off_m in ((60.0, 0.0), (61.0, 1.0), (59.0, -1.0)):
-        known = known.with_fix(False, off_m, same_m=4.0)
+    for t, off_m in enumerate(((60.0, 0.0), (61.0, 1.0), (59.0, -1.0))):
+        known = known.with_fix(float(t), False, off_m, same_m=4.0)
     assert known.against == 3
-    assert known.with_fix(False, (-40.0, 10.0), same_m=4.0).against == 1
-    fitting = known.with_fix(True, (0.5, 0.0), same_m=4.0)
+    assert known.with_fix(3.0, False, (-40.0, 10.0), same_m=4.0).against == 1
+    fitting = known.with_fix(3.0, True, (0.5, 0.0), same_m=4.0)
     assert (fitting.against, fitting.fits) == (0, 1)
     assert math.dist(known.off_m, (59.0, -1.0)) == 0.0
+
+
+def test_copies_of_one_fix_are_one() -> None:
+    known = Absolute()
+    for _ in range(4):
+        known = known.with_fix(5.0, False, (60.0, 0.0), same_m=4.0)
+    assert known.against == 1
