@@ -113,12 +113,12 @@ def _begin_at_fixes(state: FusionState, readings: Sequence[AnyHeld]) -> list[Any
     """
     others: list[AnyHeld] = []
     for reading in readings:
-        node = state.nodes.get(reading.node) if isinstance(reading, Position) else None
-        unplaced = isinstance(reading, Position) and (node is None or node.mode == "undecided")
-        if isinstance(reading, Position) and unplaced:
-            held.fix(state, reading)
-        else:
-            others.append(reading)
+        if isinstance(reading, Position):
+            node = state.nodes.get(reading.node)
+            if node is None or node.mode == "undecided":
+                held.fix(state, reading)
+                continue
+        others.append(reading)
     return others
 
 

@@ -13,7 +13,6 @@ from msgspec.structs import replace
 
 from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M
 from estimator.fusion.learned.links import SAME_PLACE
-from estimator.fusion.memory.absolute import Beginning
 from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -91,13 +90,8 @@ def hear_ranges(state: FusionState, table: Array, good: Array) -> None:
         believed = bool((good[mine] > SAME_PLACE).any())
         # Those of one link share their error, however many there are.
         links = set(table[mine, rows.LINK].tolist())
-        if believed:
-            beginning: Beginning = "sure"
-        elif len(links) >= MORE and let_go(state, node, height=False):
-            beginning = "sure"
-        else:
-            continue
-        state.nodes[node.node] = replace(node, absolute=replace(node.absolute, beginning=beginning))
+        if believed or (len(links) >= MORE and let_go(state, node, height=False)):
+            state.nodes[node.node] = replace(node, absolute=replace(node.absolute, beginning="sure"))
 
 
 def let_go(state: FusionState, node: NodeState, height: bool) -> bool:

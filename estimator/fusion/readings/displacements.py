@@ -85,9 +85,10 @@ def returns(state: FusionState, readings: Sequence[Displacement]) -> dict[str, f
 def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[Single]) -> bool:
     node, increment = step.node, step.take(reading)
     if increment is None:
-        if node.unit_t is not None:
-            text = f"{node.node} reported this epoch's displacement before"
-            state.say("conflict", reading.t, node.node, text, once=f"epochs of {node.node}")
+        text = f"{node.node} reported this epoch's displacement before"
+        if node.unit_t is None:
+            text = f"{node.node} was placed after this displacement, which is set aside"
+        state.say("conflict", reading.t, node.node, text, once=f"epochs of {node.node}")
         _count(state, reading, "not_fused")
         return False
     if increment.too_fast:

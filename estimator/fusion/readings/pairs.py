@@ -185,7 +185,7 @@ class Pairs:
             silent = node.mode == "unit" and reading.t > (node.unit_t or node.pose_t) + SILENT_S
             if known is None or node.mode == "free" or silent:
                 # Since a unit fell silent its bearer may have turned.
-                text = f"{node.node} has no heading: its bearings in the body frame are set aside"
+                text = f"{node.node} has no heading now: its bearings in the body frame are set aside"
                 state.say("not_fused", reading.t, node.node, text, once=f"bearing from {node.node}")
                 state.count("not_fused")
                 return False

@@ -70,8 +70,9 @@ def _lay(layout: Layout, drops: Mapping[int, float]) -> dict[int, tuple[float, f
         layout: of the window.
         drops: epochs of drops, by number (s).
     """
-    pairs, owners = layout.state.ledger.table("pairs"), layout.state.owners
-    ledger = layout.state.ledger
+    ledger, owners = layout.state.ledger, layout.state.owners
+    pairs = ledger.table("pairs")
+    # Where a gateway has put it, and since when it walks: no reading need tell of these.
     told = {int(row[1]): float(row[0]) for row in ledger.table("stands") if row[5] < NO_PRIOR_SIGMA_M}
     told |= {int(row[1]): float(row[0]) for row in ledger.table("begins")[::-1]}
     stood = {*ledger.table("stands")[:, 1].tolist(), *np.unique(pairs[:, 2:4]).tolist(), *told}

@@ -72,12 +72,12 @@ export function labelPlaces(
         [...places.filter(({ kind, index }) => kind === last?.kind && index === last.index), ...places],
         everything,
       );
-    let spot = pick(beside("whole", label)) ?? pick(beside("short", label));
+    const whole = beside("whole", label);
+    let spot = pick(whole) ?? pick(beside("short", label));
     if (spot === undefined && wanted.length <= MOST_LED) {
       const led = farOff(label);
       spot = pick(led.filter(clear)) ?? pick(led);
     }
-    const whole = beside("whole", label);
     if (label.always) spot ??= free(whole, over) ?? whole[0];
     if (spot === undefined) continue;
     for (const box of [spot.box, ...spot.line]) {

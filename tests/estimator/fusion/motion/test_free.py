@@ -35,8 +35,7 @@ def test_a_node_that_was_silent_for_long_is_found_where_it_is_heard_again(silenc
     found = tracker.estimates()[0]
     assert found.position_m == pytest.approx(far, abs=6.0)
     assert found.covariance_m2 is not None
-    # Two fixes half a minute apart share some of their error.
-    assert 0.1 < found.covariance_m2[0] < 2.5
+    assert 0.1 < found.covariance_m2[0] < 2.0
 
 
 @pytest.mark.parametrize("switched_on_s", [60, 400])
