@@ -23,7 +23,7 @@ class NodeEstimate(msgspec.Struct, frozen=True, kw_only=True, array_like=True, g
         heading_rad: where it faces, from east, anticlockwise (rad); None if unknown or static.
         heading_sigma_rad: standard deviation of `heading_rad` (rad).
         speed_mps: horizontal speed (m/s); None if unknown or static.
-        retired: it has been marginalised for good.
+        retired: it has been marginalised; it may come back.
     """
 
     node: str
@@ -41,6 +41,7 @@ NoticeCode = Literal[
     "not_fused",
     "too_late",
     "node_moved",
+    "came_back",
     "link_changed",
     "outlier",
     "conflict",

@@ -36,7 +36,7 @@ def status_of(role: Role, age_s: float, settings: IncidentSettings, *, retired: 
         role: what it is.
         age_s: since its newest fused reading (s).
         settings: of the incident: after what age a node is stale, lost.
-        retired: it has left for good.
+        retired: it has left.
     """
     if retired:
         return "retired"

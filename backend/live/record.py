@@ -28,7 +28,7 @@ class RecordNode(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
         heading_rad: where it faces, from east, anticlockwise (rad).
         heading_sigma_rad: standard deviation of `heading_rad` (rad).
         speed_mps: horizontal speed (m/s).
-        retired: it has left for good.
+        retired: it has left.
         callsign: how it is called by radio.
         crew: the crew of a responder.
         battery: charge, 0 to 1.

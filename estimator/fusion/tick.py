@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.entering import beginnings, introduce, retold
+from estimator.fusion.entering import again, beginnings, introduce, leaving, retold
 from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.fusion.motion.free import move_free
@@ -49,11 +49,17 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     displacements: list[Displacement] = []
     holds: list[AnyHeld] = list(state.waiting)
     retired: list[Retire] = []
+    returned: list[Node] = []
     for reading in readings:
+        if state.called and not isinstance(reading, (Node, Retire)):
+            for name in names_of(reading):
+                again.come_back(state, name, reading.t)
         if isinstance(reading, HELD):
             holds.append(reading)
         elif isinstance(reading, Displacement):
             displacements.append(reading)
+        elif isinstance(reading, Node) and any(r.node == reading.node and r.t < reading.t for r in retired):
+            returned.append(reading)
         elif isinstance(reading, Node):
             holds += retold.take(state, reading)
         elif isinstance(reading, Retire):
@@ -63,7 +69,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     holds += hear(state, [r for r in readings if isinstance(r, Rssi)])
     displacements.sort(key=attrgetter("t"))
     holds.sort(key=attrgetter("t"))
-    late_t, leaving = until_t - physics.PENDING_S, {r.node for r in retired}
+    late_t, gone_out = until_t - physics.PENDING_S, {r.node for r in retired}
     while back := returns(state, displacements):
         # What was heard of who was silent is not held against where his unit has taken him since.
         name, back_t = min(back.items(), key=itemgetter(1))
@@ -73,9 +79,11 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         holds = [*state.waiting, *(r for r in holds if r.t > back_t)]
         drift_units(state, {name: back_t})
         state.suspected = state.suspected or was_silent(state.nodes[name])
-    _fold(state, displacements, holds, late_t, leaving)
+    _fold(state, displacements, holds, late_t, gone_out)
     for gone in retired:
-        _retire(state, gone)
+        leaving.retire(state, gone)
+    for reading in returned:
+        retold.take(state, reading)
     keep_poses(state)
 
 
@@ -281,16 +289,10 @@ def _drop(state: FusionState, reading: Drop) -> bool:
     where = state.place(by)
     if by.moving:
         where = where + np.array(offset_of(state, by, reading.t))
+    crumb = state.nodes.get(reading.node)
+    if crumb is not None and crumb.mode == "retired" and crumb.role not in (*MOVING_ROLES, "base"):
+        # It was picked up, and is dropped again.
+        again.begin_anew(state, crumb, reading.t)
     done = introduce.drop(state, reading.node, by, where, reading.t)
     state.count("fused" if done else "not_fused")
     return done
-
-
-def _retire(state: FusionState, reading: Retire) -> None:
-    node = state.node_of(reading.node, "responder", reading.t)
-    if node.mode == "retired":
-        state.say("conflict", reading.t, node.node, f"{node.node} is retired already")
-        state.count("not_fused")
-        return
-    introduce.retire(state, node, reading.t)
-    state.count("fused")

@@ -26,6 +26,10 @@ def introduce(state: PaperAState, reading: Node) -> None:
     Where a node stands is taken from its first `node` reading that tells it; after that its measurements say.
     """
     known = state.node_of(reading.node, reading.role, reading.t)
+    if known.mode == "retired" and reading.t > known.t and reading.role in MOVING_ROLES:
+        # Who has left is introduced again: he enters anew.
+        state.navigations.pop(known.node, None)
+        known = GraphNode(node=known.node, role=reading.role, t=reading.t)
     if known.role != reading.role and not _may_become(known, reading):
         text = f"{known.node} is a {known.role} and cannot become a {reading.role}: the reading is set aside"
         state.refuse("conflict", reading.t, known.node, text)

@@ -26,14 +26,14 @@ def settle(state: FusionState, layout: Layout, solved: Solved, matrix: Array) ->
     )
     for i, walk in enumerate(layout.walks):
         own = np.arange(STATES * i, STATES * (i + 1))
-        node = state.nodes[walk.node.node]
+        node = state.life(walk.number)
         if node.moving:
             columns[node.position] = own[:3]
             columns[node.velocity if walk.way is None else node.unit] = own[3:]
         elif walk.last == layout.length - 1:
             gone.append(own)
     for number, start in layout.stands.items():
-        node = state.nodes[state.owners[number]]
+        node = state.life(number)
         own = layout.width + np.arange(start, start + 3)
         if node.index == number and node.mode == "static":
             columns[node.position] = own

@@ -213,14 +213,14 @@ def _judge_turns(problem: Problem, solved: Solved, found: Array, asked: Collecti
     """A unit whose heading has been found is not tried all round any more, unless another one fits again."""
     layout = problem.layout
     for i, walk in enumerate(layout.walks):
-        node = layout.state.nodes[walk.node.node]
+        node = layout.state.life(walk.number)
         sigma = float(np.sqrt(max(found[walk.last, i, 3, 3], 0.0)))
         one_of_two = any(other.image.turned_rad != 0.0 for other in node.otherwise)
         sure = sigma < physics.TURNED_SIGMA_RAD and not one_of_two
         if one_of_two and not node.turned:
-            layout.state.nodes[node.node] = replace(node, turned=True)
+            layout.state.keep(replace(node, turned=True))
         if node.turned and sure and i in asked and not _in_line(problem, solved, i):
-            layout.state.nodes[node.node] = replace(node, turned=False)
+            layout.state.keep(replace(node, turned=False))
 
 
 def _in_line(problem: Problem, solved: Solved, index: int) -> bool:

@@ -8,10 +8,8 @@ from msgspec.structs import replace
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
-from estimator.fusion.images import doubt_m2
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.motion.swings import loose_headings, swung_m2
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
 from estimator.measurements.node import MOVING_ROLES, Node
@@ -43,8 +41,8 @@ def introduce(state: FusionState, reading: Node) -> bool:
     state.nodes[node.node] = node
     if node.mode == "undecided":
         _place_new(state, node, reading)
-    elif node.mode in ("fixed", "retired") and reading.position_m not in (None, node.place_m):
-        state.say("conflict", reading.t, node.node, f"{node.node} is {node.mode} and is not moved")
+    elif node.mode == "fixed" and reading.position_m not in (None, node.place_m):
+        state.say("conflict", reading.t, node.node, f"{node.node} is fixed and is not moved")
         state.count("not_fused")
         return False
     return True
@@ -165,6 +163,7 @@ def attach_unit(state: FusionState, node: NodeState, unit_heading_rad: float | N
     """
     state.graph.delete_nodes([node.velocity])
     boot = state.navigations.get(node.node)
+    node = replace(node, raw=boot is not None)
     turn = initial_turn(node.heading_rad, unit_heading_rad)
     if boot is not None:
         # Its frame is known: it is that in which it was told to begin.
@@ -241,30 +240,6 @@ def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float)
         jacobian = np.column_stack([np.ones(3), -np.ones(3)])
     state.graph.add_measurements(columns, jacobian, information, np.zeros(3))
     return True
-
-
-def retire(state: FusionState, node: NodeState, t: float) -> None:
-    """Marginalise a node for good (operation 3); its last estimate stays to be shown."""
-    state.sightings.pop(node.node, None)
-    if node.mode == "fixed":
-        state.nodes[node.node] = replace(node, mode="retired", t=max(t, node.t), covariance_m2=(0.0,) * 6)
-        return
-    place_m, covariance_m2 = None, None
-    if node.decided:
-        place_m = tuple_of(state.graph.value(node.position))
-        rows = state.graph.rows(node.position)
-        doubt = doubt_m2(node.otherwise, state.graph.value(node.position)[:2])
-        covariance = state.graph.covariance()
-        own = covariance[rows, rows] + doubt
-        loose = loose_headings(state, covariance)
-        own += swung_m2(covariance[None, rows, loose], covariance[loose, loose])[0]
-        own[2, 2] += node.doubt_up_m2
-        covariance_m2 = upper_triangle(own)
-        owned = [v for v in (node.position, node.velocity, node.unit) if v in state.graph]
-        state.graph.delete_nodes(owned)
-    state.nodes[node.node] = replace(
-        node, mode="retired", t=max(t, node.t), place_m=place_m, covariance_m2=covariance_m2, trail=()
-    )
 
 
 def tuple_of(vector: Array) -> Vector3:

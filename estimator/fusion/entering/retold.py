@@ -9,6 +9,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
+from estimator.fusion.entering.again import call
 from estimator.fusion.entering.anew import CONTRADICTED, SET_OFF_M, error_of, known_before
 from estimator.fusion.entering.introduce import attach_unit, introduce, place, told_sigma_m
 from estimator.fusion.memory.nodes import NodeState
@@ -32,6 +33,9 @@ def take(state: FusionState, reading: Node) -> list[Position]:
         Where it tells a node to be that has a place already, as a fix that is still to be held.
     """
     known = state.nodes.get(reading.node)
+    if known is not None and known.mode == "retired":
+        call(state, reading)
+        return []
     if not introduce(state, reading):
         return []
     told = [] if known is None or not known.decided else _told_again(state, known, reading)

@@ -16,6 +16,7 @@ from estimator.graph.record import ArrayRecord, pack, unpack
 from estimator.graph.variable import Variable
 from estimator.inertial.record import NavigationRecord, navigation_of
 from estimator.inertial.record import record_of as navigation_record_of
+from estimator.measurements.node import Node
 
 
 class PriorRecord(msgspec.Struct, frozen=True, array_like=True):
@@ -33,6 +34,8 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     variables: list[Variable]
     arrays: tuple[ArrayRecord, ArrayRecord, ArrayRecord]
     nodes: list[NodeState]
+    ended: list[NodeState]
+    called: dict[str, Node]
     sightings: dict[str, int]
     waiting: tuple[AnyHeld, ...]
     noise: dict[str, LearnedNoise]
@@ -68,6 +71,8 @@ def record_of(state: FusionState) -> FusionRecord:
         list(state.graph.starts),
         (pack(matrix), pack(vector), pack(reference)),
         list(state.nodes.values()),
+        list(state.ended.values()),
+        dict(state.called),
         dict(state.sightings),
         state.waiting,
         dict(state.noise),
@@ -107,6 +112,7 @@ def state_of(record: FusionRecord) -> FusionState:
     matrix, vector, reference = (unpack(r) for r in record.arrays)
     state.graph = Kirchhoff.of(record.variables, matrix, vector, reference)
     state.nodes = {n.node: n for n in record.nodes}
+    state.ended, state.called = {n.index: n for n in record.ended}, record.called
     state.sightings, state.waiting = record.sightings, record.waiting
     state.noise, state.reference, state.counts = record.noise, record.reference, record.counts
     state.said, state.tried = dict.fromkeys(record.said), record.tried

@@ -44,6 +44,14 @@ class Listener(msgspec.Struct, frozen=True, array_like=True):
     newest: dict[str, float] = {}
     radios: dict[str, Heard] = {}
 
+    def without(self, radio: str) -> "Listener":
+        """The same, as if it had never heard a radio."""
+        if radio not in self.newest and radio not in self.radios:
+            return self
+        newest = {name: t for name, t in self.newest.items() if name != radio}
+        radios = {name: heard for name, heard in self.radios.items() if name != radio}
+        return Listener(self.occasions, newest, radios)
+
 
 class Occasion(msgspec.Struct, frozen=True):
     """What an occasion tells once it is over, and the next one that has begun.

@@ -43,6 +43,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         absolute: what fixes, heights and `node` readings have told of its place.
         pressure_t: epoch of its newest fused pressure.
         heights: heights have been told of it, by a fix, an altimeter or an air pressure.
+        raw: its unit reports raw samples, which are navigated here.
         level: its unit has never reported a change of height.
         unseen_up_m2: variance of its height by the stairs that such a unit does not see.
         turned: its unit's frame may be turned by any angle: every window is tried with several.
@@ -72,6 +73,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     absolute: Absolute = Absolute()
     pressure_t: float | None = None
     heights: bool = False
+    raw: bool = False
     level: bool = True
     unseen_up_m2: float = 0.0
     walk_factors: tuple[float, float] = (1.0, 1.0)

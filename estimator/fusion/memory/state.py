@@ -1,6 +1,7 @@
 """Everything that the fusion remembers between two ticks."""
 
 import math
+from collections.abc import Iterator
 from typing import Literal, Self
 
 import numpy as np
@@ -21,7 +22,7 @@ from estimator.graph.kirchhoff import Kirchhoff
 from estimator.inertial.navigation import Navigation
 from estimator.inertial.resting import RESTED_RADPS
 from estimator.measurements import AnyReading
-from estimator.measurements.node import Role
+from estimator.measurements.node import Node, Role
 
 AnyHeld = AnyReading | Crossing
 Count = Literal["fused", "not_fused", "outlier"]
@@ -34,6 +35,8 @@ class FusionState:
         origin_wgs84: latitude (°), longitude (°), height (m) of the local origin, if known.
         graph: L, b and x.
         nodes: every node ever introduced, in order of introduction.
+        ended: what they were before they came back, by number.
+        called: introductions of retired nodes of which nothing has been reported since, by node.
         sightings: how many each undecided node has.
         waiting: readings whose epoch no displacement has covered yet.
         noise: what was learned of each technology's noise.
@@ -67,6 +70,8 @@ class FusionState:
         self.origin_wgs84 = origin_wgs84
         self.graph = Kirchhoff()
         self.nodes: dict[str, NodeState] = {}
+        self.ended: dict[int, NodeState] = {}
+        self.called: dict[str, Node] = {}
         self.sightings: dict[str, int] = {}
         self.waiting: tuple[AnyHeld, ...] = ()
         self.noise: dict[str, LearnedNoise] = {}
@@ -101,7 +106,7 @@ class FusionState:
         twin.nodes, twin.links, twin.sightings = dict(self.nodes), self.links.copy(), dict(self.sightings)
         twin.noise, twin.calibrations = dict(self.noise), dict(self.calibrations)
         twin.counts, twin.said, twin.tried = dict(self.counts), dict(self.said), dict(self.tried)
-        twin.listeners = dict(self.listeners)
+        twin.ended, twin.called, twin.listeners = dict(self.ended), dict(self.called), dict(self.listeners)
         twin.navigations, twin.notices = dict(self.navigations), []
         return twin
 
@@ -123,6 +128,22 @@ class FusionState:
         if found is None:
             found = self.nodes[name] = NodeState(node=name, role=role, t=t, index=self.number(name))
         return found
+
+    def lives(self) -> Iterator[NodeState]:
+        """Every node as it is, and what those were before that have come back."""
+        yield from self.ended.values()
+        yield from self.nodes.values()
+
+    def life(self, number: int) -> NodeState:
+        """The node that a number in the ledger is of, as it is or was in the life that it is of."""
+        return self.ended.get(number) or self.nodes[self.owners[number]]
+
+    def keep(self, life: NodeState) -> None:
+        """Put a changed record in the place of what `life` gives."""
+        if life.index in self.ended:
+            self.ended[life.index] = life
+        else:
+            self.nodes[life.node] = life
 
     def number(self, name: str) -> int:
         """A new number in the ledger for a node, which enters or lies elsewhere now."""
@@ -155,13 +176,13 @@ class FusionState:
 
         Where raw samples are navigated, a rest has told it, or displacements say what it is less sure by.
         """
-        if node.node in self.navigations:
+        if node.raw:
             return RESTED_RADPS
-        return bias_sigma_radps(node.bias_told, [other.bias_told for other in self.nodes.values()])
+        return bias_sigma_radps(node.bias_told, [other.bias_told for other in self.lives()])
 
     def scale_sigma(self, node: NodeState) -> float:
         """Standard deviation of the prior of the scale of a node's unit."""
-        return physics.STRAPDOWN_SCALE_SIGMA if node.node in self.navigations else physics.SCALE_SIGMA
+        return physics.STRAPDOWN_SCALE_SIGMA if node.raw else physics.SCALE_SIGMA
 
     def range_scale_sigma(self, technology: str) -> float:
         """Standard deviation of the prior of a ranging technology's scale, of the kind it is taken for."""

@@ -40,7 +40,7 @@ def nodes_of(layout: Layout) -> Nodes:
         np.full(count, -1, dtype=np.int64),
         np.zeros((count, 3)),
     )
-    for node in layout.state.nodes.values():
+    for node in layout.state.lives():
         if node.place_m is not None and node.role == "base":
             found.kind[node.index], found.fixed_m[node.index] = FIXED, node.place_m
     for number, start in layout.stands.items():

@@ -59,7 +59,7 @@ class Layout:
     ) -> None:
         self.state = state
         self.since_t = since_t
-        nodes = {node.index: node for node in state.nodes.values()}
+        nodes = {node.index: node for node in state.lives()}
         begins = state.ledger.table("begins")
         alive: dict[int, tuple[float, bool]] = {}
         for row in begins:
@@ -75,8 +75,9 @@ class Layout:
         self.walks = [self._walk(nodes[n], *alive[n], ends[n]) for n in kept]
         self.spans = spans_of(self.walks)
         self.column_of = {w.number: STATES * i for i, w in enumerate(self.walks)}
-        lives = np.array([[max(alive[n][0], since_t), ends[n]] for n in kept]).reshape(-1, 2)
-        self.times: Array = np.clip(self.grid[:, None], lives[:, 0], np.maximum(lives[:, 1], lives[:, 0]))
+        # Of who has been silent since before the window nothing is known inside it: he is where he was then.
+        lives = np.array([[min(max(alive[n][0], since_t), ends[n]), ends[n]] for n in kept]).reshape(-1, 2)
+        self.times: Array = np.clip(self.grid[:, None], lives[:, 0], lives[:, 1])
         for i, walk in enumerate(self.walks):
             known_t = None if prior is None else prior.epochs.get(walk.number)
             if known_t is not None:
@@ -85,7 +86,7 @@ class Layout:
         self._lay_border()
 
     def _walk(self, node: NodeState, begin_t: float, unit: bool, end_t: float) -> Walk:
-        start = max(begin_t, self.since_t)
+        start = min(max(begin_t, self.since_t), end_t)
         first = max(int(np.searchsorted(self.grid, start, side="right")) - 1, 0)
         last = len(self.grid) - 1
         if not node.moving:
@@ -148,11 +149,10 @@ class Layout:
                     column = STATES * i + c
                     keyframes[alive, column] = np.interp(self.times[alive, i], mine[:, 0], mine[:, 3 + c])
         border = x[self.length * self.width :]
-        names = self.state.owners
         stands = self.state.ledger.table("stands")
         for row in stands:
             number = int(row[1])
-            node = self.state.nodes[names[number]]
+            node = self.state.life(number)
             current = node.index == number and (node.decided or node.place_m is not None)
             place = self.state.place(node) if current else row[2:5]
             border[self.stands[number] : self.stands[number] + 3] = place

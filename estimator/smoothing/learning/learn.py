@@ -73,14 +73,14 @@ def learn_walks(
     """
     for i, doubt in doubts.items():
         scores = noise_scores(solved.motions[i], doubt).tolist()
-        node = state.nodes[problem.layout.walks[i].node.node]
+        node = state.life(problem.layout.walks[i].number)
         factors = []
         for factor, (score, sure) in zip(node.walk_factors, scores, strict=True):
             off = np.log(factor)
             known = sure * SEEN + abs(score) + 1.0 / SPREAD**2
             step = min(max(2.0 * (score - off / SPREAD**2) / known, -most), most)
             factors.append(float(min(max(factor * np.exp(step), LEAST), MOST)))
-        state.nodes[node.node] = replace(node, walk_factors=(factors[0], factors[1]))
+        state.keep(replace(node, walk_factors=(factors[0], factors[1])))
 
 
 @njit(cache=True)
@@ -169,11 +169,10 @@ def learn_biases(state: FusionState, problem: Problem, x: Array, found: Array) -
     for i, walk in enumerate(layout.walks):
         if walk.way is None or ("walk", walk.number) in known:
             continue
-        node = state.nodes[walk.node.node]
-        if node.node in state.navigations:
+        if walk.node.raw:
             continue
         at = walk.first * layout.width + STATES * i + BIAS
         variance = float(found[walk.first, i, BIAS, BIAS])
-        told[node.node] = told_of(state.bias_sigma_radps(walk.node), float(x[at]), variance)
-    for name, one in told.items():
-        state.nodes[name] = replace(state.nodes[name], bias_told=one)
+        told[walk.number] = told_of(state.bias_sigma_radps(walk.node), float(x[at]), variance)
+    for number, one in told.items():
+        state.keep(replace(state.life(number), bias_told=one))

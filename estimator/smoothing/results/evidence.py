@@ -65,7 +65,7 @@ def explain(
     node = state.nodes[name]
     layout = problem.layout
     size = layout.length * layout.width
-    walk = next((w for w in layout.walks if w.node.node == name), None)
+    walk = next((w for w in layout.walks if w.number == node.index), None)
     if walk is not None:
         start = walk.last * layout.width + layout.column_of[walk.number]
         epoch = float(layout.times[walk.last, layout.walks.index(walk)])

@@ -30,21 +30,25 @@ def tracks(
     """
     found: dict[str, list[TrackPoint]] = {}
     for i, walk in enumerate(layout.walks):
-        found[walk.node.node] = _walked(layout, walk, i, x, (keyframes, ahead), lifetimes)
+        # Who has come back has a walk for each time that he was in.
+        before = found.get(walk.node.node, [])
+        found[walk.node.node] = before + _walked(layout, walk, i, x, (keyframes, ahead), lifetimes)
     size = layout.length * layout.width
     stands = layout.state.ledger.table("stands")
     drops = {int(row[1]): float(row[0]) for row in layout.state.ledger.table("drops")}
     lay = _lay(layout, drops)
     for row in stands:
-        number, name = int(row[1]), layout.state.owners[int(row[1])]
-        start = layout.stands[number]
+        number = int(row[1])
+        node, name, start = layout.state.life(number), layout.state.owners[number], layout.stands[number]
         place = tuple_of(x[size + start : size + start + 3])
         told = border[start : start + 3, start : start + 3].copy()
-        told[2, 2] += layout.state.nodes[name].doubt_up_m2
+        told[2, 2] += node.doubt_up_m2
         covariance = upper_triangle(told)
         first, last = lifetimes[name]
         since = max(drops.get(number, first), first) if name in found or number in drops else first
         came_t, left_t = lay.get(number, (-math.inf, math.inf))
+        if node.index == number and node.mode == "retired":
+            left_t = min(left_t, math.floor(node.t) + 1.0)
         since = max(since, came_t)
         others = found.get(name, [])
         stood = [
@@ -103,6 +107,8 @@ def _walked(
 ) -> list[TrackPoint]:
     """Points of a moving node: between two keyframes along its way, which is bent to meet the second one."""
     first, last = lifetimes[walk.node.node]
+    if walk.node.mode == "retired":
+        last = min(last, walk.node.t)
     times = layout.times[:, index]
     seconds = np.arange(math.ceil(first), math.floor(last) + 1, dtype=np.float64)
     seconds = seconds[seconds >= times[walk.first] - 1e-6]

@@ -5,7 +5,8 @@ import pytest
 
 from estimator.estimate import Covariance6
 from estimator.fusion import physics
-from estimator.fusion.entering.introduce import retire, upper_triangle
+from estimator.fusion.entering.introduce import upper_triangle
+from estimator.fusion.entering.leaving import retire
 from estimator.fusion.learned.calibration import Calibration
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -13,6 +14,7 @@ from estimator.fusion.report import covariance_of, estimates, relative
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.variable import Variable
+from estimator.measurements.retire import Retire
 
 SCALE, PLACE = Variable("range", "uwb"), Variable("position", "ff1")
 NARROW = physics.RANGE_SCALE_SIGMA
@@ -91,7 +93,7 @@ def test_who_is_retired_or_shown_from_a_sure_place_is_as_unsure_as_before() -> N
     covariance = covariance_of(state)
     before = estimates(state, covariance)[0].covariance_m2
     from_base = relative(state, covariance, "base", "ff1")
-    retire(state, state.nodes["ff1"], 21.0)
+    retire(state, Retire(t=21.0, node="ff1"))
     after = estimates(state, covariance_of(state))[0].covariance_m2
     assert from_base is not None
     assert from_base.covariance_m2 == pytest.approx(before)

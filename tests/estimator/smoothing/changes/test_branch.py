@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, place, retire
+from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, place
+from estimator.fusion.entering.leaving import retire
 from estimator.fusion.memory.ledger import ECHO
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.tick import fold_tick
@@ -12,6 +13,7 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
+from estimator.measurements.retire import Retire
 from estimator.smoothing.changes.branch import branch, reunite
 from estimator.smoothing.changes.moved import Moved
 from tests.estimator.smoothing.windows import fused
@@ -87,7 +89,7 @@ def test_who_has_been_retired_or_moves_by_itself_since_is_asked_no_more() -> Non
     state = walked()
     branch(state, Moved("b1", TURNED_S, 25))
     numbers = numbers_of(state)
-    retire(state, state.nodes["b1"], 61.0)
+    retire(state, Retire(t=61.0, node="b1"))
     assert not reunite(state)
     assert numbers_of(state) == numbers
     state = walked()
