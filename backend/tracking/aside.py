@@ -1,6 +1,7 @@
 """What the process for heavy sums does: reads the log and a stored state, and answers in plain values."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable, Iterator
 
 import msgspec
 
@@ -14,6 +15,7 @@ from estimator import trackers
 from estimator.estimate import Relative, TrackPoint
 from estimator.evidence import Advice, Evidence
 from estimator.measurements import AnyReading
+from estimator.measurements.imu import Imu, told_until
 
 Smoothed = dict[str, list[TrackPoint]]
 
@@ -60,7 +62,7 @@ def evidence_of_log(database_url: str, head: Head, node: str, t: float | None) -
         NotFound: no reading up to that moment names the node.
         LogUnreadable: the database failed.
     """
-    readings = [reading for reading in _whole_log(database_url, head) if t is None or reading.until_t <= t]
+    readings = _known_by(_whole_log(database_url, head), math.inf if t is None else t)
     try:
         return trackers.evidence(head.tracker, head.settings, readings, node)
     except KeyError as error:
@@ -87,6 +89,12 @@ def advice_of_log(database_url: str, head: Head, node: str) -> Advice | None:
         return trackers.advice(head.tracker, head.settings, readings, node)
     except KeyError as error:
         raise _not_named(node, None) from error
+
+
+def _known_by(readings: Iterable[AnyReading], t: float) -> list[AnyReading]:
+    """What readings tell of epochs up to `t` (s): of raw samples the first part, of others all or nothing."""
+    parts = (told_until(r, t) if isinstance(r, Imu) else r for r in readings if r.t <= t)
+    return [part for part in parts if part is not None]
 
 
 def _not_named(node: str, t: float | None) -> NotFound:

@@ -18,6 +18,7 @@ from estimator.fusion.readings import boots, held
 from estimator.fusion.readings.crossings import hear
 from estimator.fusion.readings.displacements import move_units, returns
 from estimator.fusion.readings.pairs import AnyPair, Pairs
+from estimator.fusion.readings.same_epoch import joined
 from estimator.fusion.rows.rows import Single, table_of
 from estimator.fusion.update import update
 from estimator.inertial.samples import AnyFolded, Samples
@@ -67,7 +68,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         elif isinstance(reading, Samples):
             displacements += boots.displacements_of(state, reading)
     holds += hear(state, [r for r in readings if isinstance(r, Rssi)])
-    displacements.sort(key=attrgetter("t"))
+    displacements = joined(state, displacements)
     holds.sort(key=attrgetter("t"))
     late_t, gone_out = until_t - physics.PENDING_S, {r.node for r in retired}
     while back := returns(state, displacements):

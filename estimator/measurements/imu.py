@@ -3,6 +3,7 @@
 from typing import Annotated
 
 from msgspec import Meta
+from msgspec.structs import replace
 
 from estimator.measurements.base import Identifier, Reading
 
@@ -48,6 +49,18 @@ class Imu(Reading, tag="imu", frozen=True):
         n = len(self.accel_mps2)
         if len(self.gyro_radps) != n or (self.mag_ut is not None and len(self.mag_ut) != n):
             raise ValueError("`accel_mps2`, `gyro_radps` and `mag_ut` must have as many samples each")
+
+
+def told_until(reading: Imu, t: float) -> Imu | None:
+    """The part of a reading that tells of no later epoch than `t` (s): its first samples; None: nothing."""
+    if reading.until_t <= t:
+        return reading
+    count = int((t - reading.t) * reading.rate_hz) if reading.rate_hz >= RATE_MIN_HZ else 0
+    if count < 1:
+        return None
+    mag_ut = None if reading.mag_ut is None else reading.mag_ut[:count]
+    accel, gyro = reading.accel_mps2[:count], reading.gyro_radps[:count]
+    return replace(reading, accel_mps2=accel, gyro_radps=gyro, mag_ut=mag_ut)
 
 
 def end_of(t: float, count: int, rate_hz: float) -> float:

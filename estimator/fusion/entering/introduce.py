@@ -153,17 +153,20 @@ def waits_for_ranges(state: FusionState, node: NodeState, t: float) -> bool:
     return anchored and not based and t - node.t < physics.WAIT_FOR_RANGES_S
 
 
-def attach_unit(state: FusionState, node: NodeState, unit_heading_rad: float | None) -> None:
+def attach_unit(
+    state: FusionState, node: NodeState, unit_heading_rad: float | None, raw: bool = False
+) -> None:
     """A node that moved freely is known to carry a PDR unit: its velocity goes, ψ, β and s come.
 
     Args:
         state: the fusion.
         node: a free node.
         unit_heading_rad: what the unit's first displacement gives as heading, if it does.
+        raw: its displacements are made here, from samples.
     """
     state.graph.delete_nodes([node.velocity])
-    boot = state.navigations.get(node.node)
-    node = replace(node, raw=boot is not None)
+    boot = state.navigations.get(node.node) if raw else None
+    node = replace(node, raw=raw)
     turn = initial_turn(node.heading_rad, unit_heading_rad)
     if boot is not None:
         # Its frame is known: it is that in which it was told to begin.

@@ -88,5 +88,5 @@ def _face(state: FusionState, node: NodeState, reading: Node) -> None:
     state.graph.delete_nodes([node.unit])
     across, upwards = physics.SPEED_SIGMA_MPS[node.role]
     state.graph.add_node(node.velocity, (0.0, 0.0, 0.0), (across, across, upwards))
-    attach_unit(state, replace(node, mode="free", turned=False), node.first_heading_rad)
+    attach_unit(state, replace(node, mode="free", turned=False), node.first_heading_rad, node.raw)
     state.due = True

@@ -3,6 +3,7 @@
 import numpy as np
 
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.readings.displacements import set_aside
 from estimator.inertial.navigation import Led, navigate
 from estimator.inertial.samples import Samples
 from estimator.measurements.node import MOVING_ROLES
@@ -19,6 +20,10 @@ def displacements_of(state: FusionState, piece: Samples) -> list[Led]:
     if node.role not in MOVING_ROLES or node.mode == "retired":
         text = f"{node.node} is a {node.mode} {node.role}: its inertial samples are set aside"
         state.say("conflict", piece.t, node.node, text, once=f"imu of {node.node}")
+        state.count("not_fused", int(piece.last))
+        return []
+    if node.mode == "unit" and not node.raw:
+        set_aside(state, node.node, piece.t)
         state.count("not_fused", int(piece.last))
         return []
     done = navigate(state.navigations.get(node.node), piece, node.heading_rad or 0.0)

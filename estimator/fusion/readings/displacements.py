@@ -31,13 +31,22 @@ def move_units(state: FusionState, readings: Sequence[Displacement], turns: list
             _count(state, reading, "not_fused")
             continue
         steps[reading.node] = step
-        if _extend(state, step, reading, turns):
+        if step.node.raw != isinstance(reading, Led):
+            set_aside(state, reading.node, reading.t)
+            _count(state, reading, "not_fused")
+        elif _extend(state, step, reading, turns):
             _count(state, reading, "fused")
     moving = [step for step in steps.values() if step.taken]
     if moving:
         advance_units(state, moving)
     for name, step in steps.items():
         state.nodes[name] = step.after()
+
+
+def set_aside(state: FusionState, name: str, t: float) -> None:
+    """Say that a bearer's way is told twice: by his unit, and by raw samples. What came first leads him."""
+    text = f"both displacements and inertial samples tell of {name}: only those that came first are used"
+    state.say("conflict", t, name, text, once=f"two units of {name}")
 
 
 def _begin(state: FusionState, reading: Displacement) -> Step | None:
@@ -54,7 +63,7 @@ def _begin(state: FusionState, reading: Displacement) -> Step | None:
             return None
         begin_at_base(state, node, start_of(reading, None))
     if state.nodes[node.node].mode == "free":
-        attach_unit(state, state.nodes[node.node], reading.heading_rad)
+        attach_unit(state, state.nodes[node.node], reading.heading_rad, isinstance(reading, Led))
     return Step(state.nodes[node.node])
 
 
@@ -85,8 +94,8 @@ def returns(state: FusionState, readings: Sequence[Displacement]) -> dict[str, f
 def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[Single]) -> bool:
     node, increment = step.node, step.take(reading)
     if increment is None:
-        text = f"{node.node} reported this epoch's displacement before"
-        if node.unit_t is None:
+        text = f"{node.node} reported another displacement that covers this one's epoch, which is set aside"
+        if node.unit_t is None and not step.taken:
             text = f"{node.node} was placed after this displacement, which is set aside"
         state.say("conflict", reading.t, node.node, text, once=f"epochs of {node.node}")
         _count(state, reading, "not_fused")

@@ -27,6 +27,7 @@ from backend.tracking.reading import read_block
 from backend.tracking.smoothing import Smoothing
 from estimator import trackers
 from estimator.measurements import AnyReading, Position
+from estimator.measurements.imu import Imu
 from estimator.trackers import kirchhoff
 from estimator.trackers.base import TrackerSettings
 from tests.backend.tracking.conftest import Write, walk
@@ -40,12 +41,14 @@ class Asked:
 
     def __init__(self) -> None:
         self.epochs: list[float] = []
+        self.until: list[float] = []
 
     def __call__(
         self, tracker: str, settings: TrackerSettings, readings: Sequence[AnyReading], node: str
     ) -> None:
         assert (tracker, settings) == ("kirchhoff", TrackerSettings())
         self.epochs = [reading.t for reading in readings]
+        self.until = [reading.until_t for reading in readings]
         if node != "ff1":
             raise KeyError(node)
 
@@ -93,6 +96,17 @@ def test_of_a_moment_epochs_up_to_it_count_whenever_they_came(
 ) -> None:
     evidence_of_log(sqlite_url, head, "ff1", 11.0)
     assert asked.epochs == [10.0, 11.0, 9.0]
+
+
+def test_of_a_moment_in_the_middle_of_raw_samples_their_first_part_counts(
+    sqlite_url: str, store: IncidentStore, write: Write, asked: Asked
+) -> None:
+    incident = store.create("boot", "recorded")
+    rest = [(0.0, 0.0, 9.81)] * 5000
+    boot = Imu(t=10.0, node="ff1", rate_hz=100.0, accel_mps2=rest, gyro_radps=[(0.0, 0.0, 0.0)] * 5000)
+    write(incident.id, [[boot]])
+    evidence_of_log(sqlite_url, head_of(store.get(incident.id)), "ff1", 40.0)
+    assert asked.until == [40.0]
 
 
 def test_entries_after_the_head_are_left_out(sqlite_url: str, head: Head, write: Write, asked: Asked) -> None:

@@ -187,7 +187,7 @@ def test_when_all_have_left_the_picture_stands_and_nothing_is_said_of_it() -> No
         (Displacement(t=3.0, node="ff1", delta_m=(90.0, 0.0, 0.0)), "outlier"),
         (Position(t=3.0, node="ff1", wgs84=(47.0, 8.0, 400.0)), "no_origin"),
         (
-            Imu(t=3.0, node="ff1", rate_hz=10.0, accel_mps2=[(0.0, 0.0, 9.8)], gyro_radps=[(0.0, 0.0, 0.0)]),
+            Imu(t=3.0, node="ff3", rate_hz=10.0, accel_mps2=[(0.0, 0.0, 9.8)], gyro_radps=[(0.0, 0.0, 0.0)]),
             "not_fused",
         ),
     ],

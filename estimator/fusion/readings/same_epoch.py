@@ -1,0 +1,67 @@
+"""Displacements of one unit that are stamped with the same epoch: parts of its way, or copies of one."""
+
+import math
+from collections.abc import Sequence
+from itertools import groupby
+
+from msgspec.structs import replace
+
+from estimator.fusion.memory.state import FusionState
+from estimator.inertial.navigation import Led
+from estimator.measurements.displacement import Displacement
+
+COPY = 1e-6
+"""Copies of a reading by two gateways may differ by how they write a number (m, rad)."""
+
+
+def _whose(reading: Displacement) -> tuple[float, str, bool]:
+    return reading.t, reading.node, isinstance(reading, Led)
+
+
+def joined(state: FusionState, readings: Sequence[Displacement]) -> list[Displacement]:
+    """Add up what one unit reports of one epoch: each tells of what was walked since the one before.
+
+    Stamps may be rounded. Only one of each that say the same counts: two gateways have heard it.
+
+    Args:
+        state: the fusion: counts those that go into another.
+        readings: in canonical order, of one tick.
+
+    Returns:
+        One of each unit and epoch, in order of epoch.
+    """
+    ordered = sorted(readings, key=_whose)
+    found = []
+    for _, same in groupby(ordered, key=_whose):
+        first, *others = same
+        parts = [first]
+        for other in others:
+            if any(_is_copy(other, part) for part in parts):
+                text = f"{other.node} reported this epoch's displacement before"
+                state.say("conflict", other.t, other.node, text, once=f"epochs of {other.node}")
+                state.count("not_fused")
+            else:
+                parts.append(other)
+        found.append(first if len(parts) == 1 else _sum_of(parts))
+        state.count("fused", len(parts) - 1)
+    return found
+
+
+def _is_copy(one: Displacement, other: Displacement) -> bool:
+    if one.from_t != other.from_t:
+        return False
+    near = math.dist(one.delta_m, other.delta_m) <= COPY
+    if one.heading_rad is None or other.heading_rad is None:
+        return near and one.heading_rad is other.heading_rad
+    return near and abs(one.heading_rad - other.heading_rad) <= COPY
+
+
+def _sum_of(parts: Sequence[Displacement]) -> Displacement:
+    """The way of all parts: what they are unsure by adds up as well."""
+    east, north, up = (sum(part.delta_m[axis] for part in parts) for axis in range(3))
+    begun = [part.from_t for part in parts if part.from_t is not None]
+    sigmas = [part.sigma_m for part in parts]
+    told = [sigma for sigma in sigmas if sigma is not None]
+    sigma_m = math.hypot(*told) if len(told) == len(sigmas) else None
+    from_t = min(begun) if begun else None
+    return replace(parts[-1], delta_m=(east, north, up), from_t=from_t, sigma_m=sigma_m)
