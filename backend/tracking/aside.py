@@ -137,7 +137,7 @@ def relative_from_state(database_url: str, head: Head, a: str, b: str) -> Relati
         raise NotFound(f"No reading has named {a!r} or {b!r} yet.")
     if snapshot is None:
         raise Unavailable("Nothing of this incident has been estimated yet: start an estimator worker.")
-    return _relative(IncidentFold.restore(snapshot.state, head.tracker, head.settings), a, b)
+    return _relative(IncidentFold.restore(snapshot.state, head.tracker, head.settings, head.live), a, b)
 
 
 def relative_of_log(database_url: str, head: Head, a: str, b: str) -> Relative | None:
@@ -153,7 +153,7 @@ def relative_of_log(database_url: str, head: Head, a: str, b: str) -> Relative |
         NotFound: a node is not known.
         LogUnreadable: the database failed.
     """
-    fold = IncidentFold(head.tracker, head.settings)
+    fold = IncidentFold(head.tracker, head.settings, head.live)
     engine = make_engine(database_url)
     try:
         for batch, readings in _entries(SqlLogReader(engine), head):

@@ -1,5 +1,6 @@
 """What is shown but not fused: names, crews, vitals, alarms, notices. A pure fold over readings."""
 
+import math
 from collections.abc import Iterable
 
 import msgspec
@@ -7,6 +8,7 @@ import msgspec
 from backend.live.record import PictureRecord, RecordAlarm, RecordNode, RecordNotice
 from backend.tracking.alarms import AlarmEntry
 from estimator.estimate import NodeEstimate, Notice
+from estimator.fusion.tick import names_of
 from estimator.measurements import Alarm, AnyReading, Node, Status
 from estimator.measurements.status import AlarmKind
 
@@ -46,15 +48,24 @@ class Board(msgspec.Struct):
         nodes: what each node has told of itself.
         alarms: alarms of each node, by kind.
         notices: the newest notice of each code and node, oldest first.
+        came_t: when those were heard of last of whom readings told before their time, Unix seconds.
     """
 
     nodes: dict[str, NodeBoard] = msgspec.field(default_factory=dict)
     alarms: dict[str, dict[AlarmKind, AlarmEntry]] = msgspec.field(default_factory=dict)
     notices: list[RecordNotice] = msgspec.field(default_factory=list)
+    came_t: dict[str, float] = msgspec.field(default_factory=dict)
 
-    def fold(self, readings: Iterable[AnyReading]) -> None:
-        """Take readings in, in their order; those of other kinds change nothing."""
+    def fold(self, readings: Iterable[AnyReading], known_t: float = math.inf) -> None:
+        """Take readings in, in their order.
+
+        Args:
+            readings: they are.
+            known_t: when they came, where the incident goes by the server's clock, Unix seconds.
+        """
         for reading in readings:
+            if reading.until_t > known_t or self.came_t:
+                self._came(reading, known_t)
             match reading:
                 case Status():
                     self._told(reading)
@@ -62,6 +73,13 @@ class Board(msgspec.Struct):
                     self._alarmed(reading)
                 case Node():
                     self._named(reading)
+
+    def _came(self, reading: AnyReading, known_t: float) -> None:
+        """Note when a node whose clock is ahead was heard of."""
+        for name in names_of(reading):
+            if reading.until_t > known_t or name in self.came_t:
+                heard_t = min(reading.until_t, known_t)
+                self.came_t[name] = max(heard_t, self.came_t.get(name, heard_t))
 
     def notice(self, notices: Iterable[Notice]) -> None:
         """Take in what the tracker has noticed; a notice replaces the last of its code and node."""
@@ -108,12 +126,12 @@ class Board(msgspec.Struct):
 
     def picture(self, estimates: Iterable[NodeEstimate], newest_t: float | None) -> PictureRecord:
         """The record of what the tracker knows and what stands here."""
-        nodes = [_joined(estimate, self.nodes.get(estimate.node)) for estimate in estimates]
+        nodes = [self._joined(estimate) for estimate in estimates]
         tracked = {node.node for node in nodes}
         for name, known in self.nodes.items():
             if name not in tracked:
                 # Someone in trouble is shown even where the tracker has nothing to say of it.
-                nodes.append(_joined(NodeEstimate(node=name, role="responder", t=known.t), known))
+                nodes.append(self._joined(NodeEstimate(node=name, role="responder", t=known.t)))
         standing = [
             RecordAlarm(node=node, alarm=kind, state=entry.state, t=entry.t, text=entry.text)
             for node, kinds in self.alarms.items()
@@ -125,13 +143,16 @@ class Board(msgspec.Struct):
             t=newest_t, nodes=tuple(nodes), alarms=tuple(standing), notices=tuple(self.notices)
         )
 
+    def _joined(self, estimate: NodeEstimate) -> RecordNode:
+        told = self.nodes.get(estimate.node) or NodeBoard(t=estimate.t)
+        return _record_of(estimate, told, min(estimate.t, self.came_t.get(estimate.node, math.inf)))
 
-def _joined(estimate: NodeEstimate, known: NodeBoard | None) -> RecordNode:
-    told = known or NodeBoard(t=estimate.t)
+
+def _record_of(estimate: NodeEstimate, told: NodeBoard, t: float) -> RecordNode:
     return RecordNode(
         node=estimate.node,
         role=estimate.role,
-        t=estimate.t,
+        t=t,
         position_m=estimate.position_m,
         covariance_m2=estimate.covariance_m2,
         heading_rad=estimate.heading_rad,

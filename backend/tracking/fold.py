@@ -1,5 +1,6 @@
 """One incident's log folded into pictures: the state of the worker, apart from all input and output."""
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Self
 
@@ -15,7 +16,7 @@ from estimator.estimate import Relative
 from estimator.measurements import AnyReading
 from estimator.trackers.base import Tracker, TrackerSettings
 
-VERSION = 2
+VERSION = 3
 
 
 class OtherState(Exception):  # noqa: N818 - names the condition
@@ -56,6 +57,7 @@ class IncidentFold:
     Args:
         tracker: name of the tracker.
         settings: what it is told.
+        live: the incident goes by the server's clock: nothing is newer than when it came.
 
     Attributes:
         seq: newest log entry folded, or begun.
@@ -65,8 +67,9 @@ class IncidentFold:
         row: newest second whose row was made; None: none since the beginning, or since it was restored.
     """
 
-    def __init__(self, tracker: str, settings: TrackerSettings) -> None:
+    def __init__(self, tracker: str, settings: TrackerSettings, live: bool = False) -> None:
         self._name = tracker
+        self._live = live
         self._settings = settings
         self._tracker: Tracker = trackers.create(tracker, settings)
         self._board = Board()
@@ -88,7 +91,8 @@ class IncidentFold:
             After each piece, the row that it completed, or None.
         """
         self.whole = False
-        for piece in pieces(readings, self.newest_t):
+        known_t = batch.received if self._live else math.inf
+        for piece in pieces(readings, self.newest_t, known_t):
             row = None
             if piece.row is not None:
                 # Here and nowhere else: when a picture is published depends on the wall clock, rows do not.
@@ -96,8 +100,8 @@ class IncidentFold:
                 self._picture = None
                 row = self._row(piece.row)
                 self.row = piece.row
-            self._tracker.fold(piece.readings)
-            self._board.fold(piece.readings)
+            self._tracker.fold(piece.readings, known_t)
+            self._board.fold(piece.readings, known_t)
             self.newest_t = piece.newest_t
             self._picture = None
             self.seq, self.received = batch.seq, batch.received
@@ -149,7 +153,7 @@ class IncidentFold:
         )
 
     @classmethod
-    def restore(cls, encoded: bytes, tracker: str, settings: TrackerSettings) -> Self:
+    def restore(cls, encoded: bytes, tracker: str, settings: TrackerSettings, live: bool = False) -> Self:
         """The fold that goes on where `state` was taken.
 
         Raises:
@@ -165,7 +169,7 @@ class IncidentFold:
             restored = trackers.restore(tracker, state.estimator)
         except (msgspec.DecodeError, ValueError) as error:
             raise OtherState(str(error)) from error
-        fold = cls(tracker, settings)
+        fold = cls(tracker, settings, live)
         fold._tracker, fold._board = restored, state.board
         fold.seq, fold.received, fold.newest_t = state.seq, state.received, state.newest_t
         return fold

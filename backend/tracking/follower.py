@@ -180,13 +180,14 @@ class Follower:
         head = self._head
         snapshot = await asyncio.to_thread(self._reader.snapshot, head.incident)
         if snapshot is None:
-            return await self._in_compute(IncidentFold, head.tracker, head.settings), None
+            return await self._in_compute(IncidentFold, head.tracker, head.settings, head.live), None
         try:
-            fold = await self._in_compute(IncidentFold.restore, snapshot.state, head.tracker, head.settings)
+            told = head.tracker, head.settings, head.live
+            fold = await self._in_compute(IncidentFold.restore, snapshot.state, *told)
         except OtherState as why:
             log.warning("the log is folded from its start", incident=head.incident, why=str(why))
             span = await asyncio.to_thread(self._reader.frame_span, head.incident)
-            fold = await self._in_compute(IncidentFold, head.tracker, head.settings)
+            fold = await self._in_compute(IncidentFold, head.tracker, head.settings, head.live)
             return fold, None if span is None else span[1]
         return fold, None
 

@@ -21,6 +21,7 @@ class Head(msgspec.Struct, frozen=True, kw_only=True):
         last_seq: newest entry of its log.
         tracker: name of its tracker.
         settings: what its tracker is told.
+        live: it goes by the server's clock.
     """
 
     incident: str
@@ -28,11 +29,17 @@ class Head(msgspec.Struct, frozen=True, kw_only=True):
     last_seq: int
     tracker: str
     settings: TrackerSettings
+    live: bool
 
 
 _snapshot_seq = sa.func.coalesce(snapshots.c.seq, 0)
 _heads = sa.select(
-    incidents.c.id, incidents.c.state, incidents.c.last_seq, incidents.c.origin, incidents.c.settings
+    incidents.c.id,
+    incidents.c.state,
+    incidents.c.last_seq,
+    incidents.c.origin,
+    incidents.c.settings,
+    incidents.c.clock,
 ).select_from(incidents.outerjoin(snapshots, snapshots.c.incident == incidents.c.id))
 
 
@@ -60,6 +67,7 @@ def _head(row: Any) -> Head:
         last_seq=row.last_seq,
         tracker=settings.tracker,
         settings=_tracker_settings(settings, origin),
+        live=row.clock == "live",
     )
 
 
@@ -71,6 +79,7 @@ def head_of(incident: Incident) -> Head:
         last_seq=incident.last_seq,
         tracker=incident.settings.tracker,
         settings=_tracker_settings(incident.settings, incident.origin),
+        live=incident.clock == "live",
     )
 
 

@@ -28,21 +28,25 @@ class Piece(msgspec.Struct, frozen=True):
     newest_t: float
 
 
-def pieces(readings: Sequence[AnyReading], newest_t: float | None) -> Iterator[Piece]:
+def pieces(
+    readings: Sequence[AnyReading], newest_t: float | None, known_t: float = math.inf
+) -> Iterator[Piece]:
     """Cut the readings of a batch where incident time passes a whole second.
 
-    Incident time is the running maximum of the epochs up to which readings tell. Row `s` is the picture after
-    everything that was folded before incident time passed `s`; where it passes several at once, only the
-    first gets a row: the others would be the same.
+    Incident time is the running maximum of the epochs up to which readings tell, but never later than they
+    came. Row `s` is the picture after everything that was folded before incident time passed `s`; where it
+    passes several at once, only the first gets a row: the others would be the same.
 
     Args:
         readings: of one batch.
         newest_t: incident time before it; None at the beginning.
+        known_t: when it came, where the incident goes by the server's clock, Unix seconds.
     """
     piece: list[AnyReading] = []
     row: int | None = None
     for reading in sorted(readings, key=_epoch):
-        passes = newest_t is not None and reading.until_t > math.ceil(newest_t)
+        epoch = min(reading.until_t, known_t)
+        passes = newest_t is not None and epoch > math.ceil(newest_t)
         if piece and (passes or len(piece) == LONGEST_PIECE):
             assert newest_t is not None  # noqa: S101 - a piece has readings, and they have epochs
             yield Piece(piece, row, newest_t)
@@ -50,7 +54,7 @@ def pieces(readings: Sequence[AnyReading], newest_t: float | None) -> Iterator[P
         if passes:
             row = row_of(newest_t)
         piece.append(reading)
-        newest_t = reading.until_t if newest_t is None else max(newest_t, reading.until_t)
+        newest_t = epoch if newest_t is None else max(newest_t, epoch)
     if piece and newest_t is not None:
         yield Piece(piece, row, newest_t)
 

@@ -1,5 +1,6 @@
 """The interface of a tracker, and of a smoother. A new estimator is one new file in this folder."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Protocol, Self
 
@@ -24,8 +25,14 @@ class TrackerSettings(msgspec.Struct, frozen=True, kw_only=True):
 class Tracker(Protocol):
     """Folds readings into estimates; a deterministic function of what it is given."""
 
-    def fold(self, readings: Sequence[AnyReading]) -> None:
-        """Fold readings, in any order of epochs; those within the lag lose no accuracy by being late."""
+    def fold(self, readings: Sequence[AnyReading], known_t: float = math.inf) -> None:
+        """Fold readings, in any order of epochs; those within the lag lose no accuracy by being late.
+
+        Args:
+            readings: they are.
+            known_t: when they came, by a clock that can be trusted (s): an epoch beyond it is that of a
+                wrong clock, and makes no other reading late.
+        """
 
     def estimates(self) -> list[NodeEstimate]:
         """Every node ever introduced, in order of introduction."""

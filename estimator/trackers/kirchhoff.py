@@ -5,6 +5,7 @@ bias; radio has P0 and n; static nodes have positions. Section numbers of estima
 code in `estimator.fusion`.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Self
 
@@ -39,12 +40,12 @@ class KirchhoffTracker:
         self._lag = Lag(self.settings.lag_s, FusionState(self.settings.origin_wgs84))
         self._shown: tuple[FusionState, Array] | None = None
 
-    def fold(self, readings: Sequence[AnyReading]) -> None:
+    def fold(self, readings: Sequence[AnyReading], known_t: float = math.inf) -> None:
         """Fold readings, in any order of epochs; those within the lag lose no accuracy by being late.
 
         The work is done when something is asked for, so folding batch by batch costs no more than at once.
         """
-        self._lag.add(readings)
+        self._lag.add(readings, known_t)
         self._shown = None
 
     def _picture(self) -> tuple[FusionState, Array]:

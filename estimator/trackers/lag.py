@@ -5,6 +5,7 @@ each tick is folded from the state before it and its own readings in canonical o
 something is asked for, so many batches cost one pass.
 """
 
+import math
 from bisect import bisect_left, insort
 from collections.abc import Sequence
 from operator import itemgetter
@@ -54,7 +55,7 @@ class Lag:
 
     Attributes:
         lag_s: readings later than this behind the newest epoch are counted, not fused (s).
-        newest_t: newest epoch so far; None before the first reading.
+        newest_t: newest epoch so far, but none that was still to come; None before the first reading.
         too_late: readings that came too late.
         received: all readings.
     """
@@ -105,8 +106,13 @@ class Lag:
         )
         return record, [state for _, state in checkpoints]
 
-    def add(self, readings: Sequence[AnyReading]) -> None:
-        """Take readings in; those beyond the lag are counted and noticed."""
+    def add(self, readings: Sequence[AnyReading], known_t: float = math.inf) -> None:
+        """Take readings in; those beyond the lag are counted and noticed.
+
+        Args:
+            readings: in any order of epochs.
+            known_t: when they came, by a clock that can be trusted (s): by no later epoch others are late.
+        """
         late: dict[str, list[AnyFolded]] = {}
         self.received += len(readings)
         in_order = sorted(((r.until_t, r) for r in in_pieces(readings)), key=itemgetter(0))
@@ -115,7 +121,8 @@ class Lag:
                 self.too_late += int(not isinstance(reading, Samples) or reading.last)
                 late.setdefault(names_of(reading)[0], []).append(reading)
                 continue
-            self.newest_t = until_t if self.newest_t is None else max(self.newest_t, until_t)
+            newest_t = min(until_t, known_t)
+            self.newest_t = newest_t if self.newest_t is None else max(self.newest_t, newest_t)
             tick = tick_of(until_t)
             if tick not in self._readings:
                 self._readings[tick] = []

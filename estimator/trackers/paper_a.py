@@ -4,6 +4,7 @@ Nothing is added to it: no heading, bias, scale or path loss is a state, no nois
 linearised again, and its covariance is L⁻¹ as it stands (eq. 5). The parts are in `estimator.paper_a`.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Self
 
@@ -73,7 +74,11 @@ class PaperATracker:
         self._state = PaperAState()
         self._covariance: Array | None = None
 
-    def fold(self, readings: Sequence[AnyReading]) -> None:
+    def fold(
+        self,
+        readings: Sequence[AnyReading],
+        known_t: float = math.inf,  # noqa: ARG002 - what is late goes by each node's own state
+    ) -> None:
         """Fold readings, those of one call in order of their epochs."""
         self._covariance = None
         for reading in sorted(readings, key=lambda r: (r.until_t, ORDER.get(type(r), 5), _encode(r))):

@@ -3,11 +3,12 @@
 import random
 
 import pytest
+from msgspec.structs import replace
 
 from backend.live import record
 from backend.log.base import LoggedBatch, RecordedFrame
 from backend.tracking.fold import IncidentFold, OtherState
-from estimator.measurements import Alarm, AnyReading, Status
+from estimator.measurements import Alarm, AnyReading, Displacement, Node, Status
 from estimator.measurements.status import AlarmState
 from estimator.trackers import kirchhoff
 from estimator.trackers.base import TrackerSettings
@@ -146,3 +147,56 @@ def test_two_responders_relative_position_is_told() -> None:
     assert relative.delta_m[0] == pytest.approx(-1.0, abs=1.0)
     with pytest.raises(KeyError):
         fold.relative("ff1", "nobody")
+
+
+AHEAD_S = 59.0
+
+
+def by_two_gateways(seconds: int) -> list[list[AnyReading]]:
+    """Entry `n` comes at 1000 + n: one gateway's clock is right, the other's is nearly a minute fast."""
+    entered: list[AnyReading] = [
+        Node(t=1000.0, node="base", role="base"),
+        *(Node(t=1000.0, node=name, role="responder", position_m=(0.0, 0.0, 0.0)) for name in ("ff1", "ff2")),
+    ]
+    batches = [entered]
+    for second in range(1, seconds + 1):
+        t, step = 1000.0 + second, (1.0, 0.0, 0.0)
+        batches.append([Displacement(t=t + AHEAD_S, from_t=t + AHEAD_S - 1.0, node="ff2", delta_m=step)])
+        batches.append([Displacement(t=t - 1.5, from_t=t - 2.5, node="ff1", delta_m=step)])
+    return batches
+
+
+def fold_live(seconds: int) -> IncidentFold:
+    fold = IncidentFold("kirchhoff", TrackerSettings(lag_s=30.0), live=True)
+    for seq, readings in enumerate(by_two_gateways(seconds)):
+        batch = replace(entry(seq + 1), received=1000.0 + (seq + 1) // 2)
+        assert list(fold.fold(batch, readings))
+    return fold
+
+
+def test_a_fast_clock_makes_nobody_elses_readings_late() -> None:
+    by_name = {node.node: node for node in fold_live(20).picture().nodes}
+    assert by_name["ff1"].t == 1018.5
+    assert by_name["ff1"].position_m == pytest.approx((19.0, 0.0, 0.0), abs=1.0)
+
+
+def test_nobody_is_newer_than_when_he_was_heard_of() -> None:
+    fold = fold_live(20)
+    by_name = {node.node: node for node in fold.picture().nodes}
+    assert by_name["ff2"].t == 1020.0
+    assert fold.newest_t == 1020.0
+    list(fold.fold(replace(entry(100), received=1050.0), [Status(t=1049.0, node="ff1", battery=0.5)]))
+    assert {node.node: node.t for node in fold.picture().nodes}["ff2"] == 1020.0
+
+
+def test_a_fold_that_is_restored_knows_when_a_fast_clocks_bearer_was_heard_of() -> None:
+    fold = fold_live(20)
+    again = IncidentFold.restore(fold.state(), "kirchhoff", TrackerSettings(lag_s=30.0), live=True)
+    assert again.picture() == fold.picture()
+
+
+def test_where_readings_are_the_clock_their_epochs_stand() -> None:
+    fold = IncidentFold("kirchhoff", TrackerSettings(lag_s=90.0))
+    fold_all(fold, by_two_gateways(20))
+    assert {node.node: node.t for node in fold.picture().nodes}["ff2"] == 1020.0 + AHEAD_S
+    assert fold.newest_t == 1020.0 + AHEAD_S

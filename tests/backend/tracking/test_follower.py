@@ -1,6 +1,7 @@
 """An incident that the estimator cannot fold stands still and says so; the others go on."""
 
 import asyncio
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Self
@@ -33,7 +34,8 @@ class Fragile:
         self.newest_t = 0.0
         self.lazy = False
 
-    def fold(self, readings: Sequence[AnyReading]) -> None:
+    def fold(self, readings: Sequence[AnyReading], known_t: float = math.inf) -> None:
+        assert known_t == math.inf, "a recorded incident goes by its readings"
         for reading in readings:
             if isinstance(reading, Retire):
                 raise ZeroDivisionError("a defect")

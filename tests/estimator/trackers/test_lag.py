@@ -1,8 +1,12 @@
 """What the tracker keeps to roll back to: what late readings need, however long the incident lasts."""
 
+import pytest
+
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
+from estimator.measurements.position import Position
+from estimator.trackers.base import TrackerSettings
 from estimator.trackers.kirchhoff import KirchhoffTracker
 
 STEPS = 400
@@ -38,3 +42,18 @@ def test_what_is_kept_does_not_grow_with_the_incident() -> None:
         sizes.append(len(tracker.snapshot()))
         assert len(tracker._lag._checkpoints) < 20
     assert sizes[1] < 1.1 * sizes[0]
+
+
+def test_an_epoch_that_is_still_to_come_makes_nothing_late_and_is_held_once_its_time_is_there() -> None:
+    ahead = Position(t=90.0, node="ff2", position_m=(5.0, 5.0, 0.0), sigma_m=(1.0, 1.0, 1.0))
+    tracker = KirchhoffTracker(TrackerSettings(lag_s=30.0))
+    tracker.fold([*walk(1), ahead], 1.0)
+    for t in range(2, 41):
+        tracker.fold(
+            [Displacement(t=float(t), from_t=t - 1.0, node="ff1", delta_m=(1.0, 0.0, 0.0))], float(t)
+        )
+    shown = {e.node: e.position_m for e in tracker.estimates()}
+    assert shown["ff1"] == pytest.approx((40.0, 0.0, 0.0), abs=1.0)
+    assert shown["ff2"] == pytest.approx((5.0, 5.0, 0.0), abs=1.0)
+    assert tracker.counts()["too_late"] == 0
+    assert KirchhoffTracker.restore(tracker.snapshot()).estimates() == tracker.estimates()
