@@ -36,9 +36,8 @@ def evidence_router(incidents: IncidentStore, smoothing: Smoothing) -> APIRouter
         known = await asyncio.to_thread(incidents.get, incident)
         found = await smoothing.evidence(head_of(known), node, t)
         if found is None:
-            raise Conflict(
-                f"The position of {node!r} is not decided {'yet' if t is None else 'at that time'}."
-            )
+            when = "yet" if t is None else "at that time"
+            raise Conflict(f"The position of {node!r} is not decided {when}, or nobody doubts it.")
         return as_json(found)
 
     @router.get("/advice", operation_id="get_advice", responses=answers_with("Advice", 404, 409, 503, 504))

@@ -55,7 +55,7 @@ class BatchSmoother:
             KeyError: there is no such node.
         """
         state = first_pass(in_order(readings), self.settings.origin_wgs84)
-        if state.nodes[node].mode in ("fixed", "retired") or not len(state.ledger.table("begins")):
+        if state.nodes[node].mode == "fixed" or not len(state.ledger.table("begins")):
             return None
         problem, solved = solve_whole(state)
         problem, solved, modes, *_ = likeliest(problem, solved, WHOLE)

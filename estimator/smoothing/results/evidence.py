@@ -69,7 +69,7 @@ def explain(
     if walk is not None:
         start = walk.last * layout.width + layout.column_of[walk.number]
         epoch = float(layout.times[walk.last, layout.walks.index(walk)])
-    elif node.index in layout.stands and node.decided:
+    elif node.index in layout.stands and (node.decided or node.mode == "retired"):
         start, epoch = size + layout.stands[node.index], node.t
     else:
         return None

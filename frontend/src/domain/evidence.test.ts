@@ -100,6 +100,13 @@ test("the best piece of advice is said in one line", () => {
   );
 });
 
+test("what would gain less than the screen shows is not called a change", () => {
+  const drop: Suggestion = { action: "drop", by: "l3-2", position_m: [1, 2, 3], sigma_m: 2.97, gain: 0.02 };
+  expect(adviceWords(anAdvice(drop), name).replaceAll("\u00a0", " ")).toBe(
+    "A breadcrumb by L3-2 would take away 2 %: typical error stays 3.0 m.",
+  );
+});
+
 test("where nothing helps, that is what is said", () => {
   const idle: Suggestion = { action: "drop", by: "l3-2", position_m: [1, 2, 3], sigma_m: 3, gain: 0 };
   expect(adviceWords(anAdvice(), name)).toBe("Nothing at hand would make it surer.");

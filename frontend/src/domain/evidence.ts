@@ -111,7 +111,9 @@ export function adviceWords(advice: Advice, name: (node: string) => string): str
   const best = advice.suggestions[0];
   if (best === undefined || best.gain <= 0) return "Nothing at hand would make it surer.";
   // Not "±": that is the 95 % radius everywhere on the screen.
-  const errors = `typical error ${metres(best.sigma_m)} instead of ${metres(advice.sigma_m)}`;
+  const [before, after] = [metres(advice.sigma_m), metres(best.sigma_m)];
+  const errors =
+    before === after ? `typical error stays ${after}` : `typical error ${after} instead of ${before}`;
   return `${whoWords(best, name)} would take away ${percent(best.gain)}: ${errors}.`;
 }
 

@@ -8,6 +8,7 @@ from estimator import trackers
 from estimator.measurements import AnyReading
 from estimator.measurements.position import Position
 from estimator.measurements.range import Range
+from estimator.measurements.retire import Retire
 from estimator.trackers.base import TrackerSettings
 from tests.estimator.walks import behind_a_wall, two_responders
 
@@ -55,6 +56,16 @@ def test_a_range_through_a_wall_is_too_long_by_what_its_radio_said() -> None:
     for measured in walled:
         here = next(point.position_m for point in ways["ff2"] if point.t == measured.t)
         assert measured.residual == pytest.approx(measured.value - math.dist(here, beacon), abs=0.05)
+
+
+@pytest.mark.parametrize("node", ["ff1", "beacon", "b10"])
+def test_who_has_left_is_held_by_what_held_him(node: str) -> None:
+    before = trackers.evidence("kirchhoff", SETTINGS, walk(), node)
+    after = trackers.evidence("kirchhoff", SETTINGS, [*walk(), Retire(t=36.0, node=node)], node)
+    assert before is not None
+    assert after is not None
+    assert after.position_m == pytest.approx(before.position_m)
+    assert [m.share for m in after.held] == pytest.approx([m.share for m in before.held])
 
 
 def test_an_unknown_node_has_no_evidence() -> None:
