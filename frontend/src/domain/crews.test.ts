@@ -42,5 +42,6 @@ test("no crew has a colour near the red of alarms", () => {
 test("aircraft and responders without a crew have marks of their own", () => {
   const marks = crews("E7");
   expect(markOf(aNode({ role: "uav" }), marks).letters).toBe("UAV");
-  expect(markOf(aNode({ crew: null }), marks).letters).toBe("–");
+  expect(markOf(aNode({ crew: null, node: "ff12", callsign: null }), marks).letters).toBe("f12");
+  expect(markOf(aNode({ crew: null, callsign: "!" }), marks).letters).toBe("?");
 });

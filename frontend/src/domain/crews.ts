@@ -1,5 +1,6 @@
 /** A crew's mark: an Okabe–Ito colour, never alone, always with its letters. */
 import type { FrameNode } from "./types";
+import { nameOf } from "./words";
 
 export interface CrewMark {
   readonly letters: string;
@@ -18,12 +19,14 @@ const COLOURS: readonly { colour: string; ink: string }[] = [
   { colour: "#cc79a7", ink: DARK },
   { colour: "#0072b2", ink: "#ffffff" },
 ];
-const NO_CREW: CrewMark = { letters: "–", colour: "#aab2ba", ink: DARK };
+const NO_CREW: Omit<CrewMark, "letters"> = { colour: "#aab2ba", ink: DARK };
 const UAV: CrewMark = { letters: "UAV", colour: "#aab2ba", ink: DARK };
 
-/** The crew's name as far as a mark has room for it: its first three letters or digits. */
-function lettersOf(crew: string): string {
-  return crew.replace(/[^\p{L}\p{N}]/gu, "").slice(0, 3) || "?";
+/** Letters and digits that a mark has room for. */
+const ROOM = 3;
+
+function lettersOf(name: string): string {
+  return name.replace(/[^\p{L}\p{N}]/gu, "");
 }
 
 /** A mark for each crew; colours go round in the order of the names, so all screens agree. */
@@ -33,12 +36,18 @@ export function crewMarks(nodes: Iterable<FrameNode>): Map<string, CrewMark> {
   const marks = new Map<string, CrewMark>();
   for (const crew of [...names].sort((a, b) => a.localeCompare(b))) {
     const colours = COLOURS[marks.size % COLOURS.length] ?? NO_CREW;
-    marks.set(crew, { letters: lettersOf(crew), colour: colours.colour, ink: colours.ink });
+    marks.set(crew, {
+      letters: lettersOf(crew).slice(0, ROOM) || "?",
+      colour: colours.colour,
+      ink: colours.ink,
+    });
   }
   return marks;
 }
 
+/** Of whom no crew is known the mark carries the end of his name, by which he differs from the others. */
 export function markOf(node: FrameNode, marks: ReadonlyMap<string, CrewMark>): CrewMark {
   if (node.role === "uav") return UAV;
-  return (node.crew && marks.get(node.crew)) || NO_CREW;
+  const known = node.crew ? marks.get(node.crew) : undefined;
+  return known ?? { ...NO_CREW, letters: lettersOf(nameOf(node)).slice(-ROOM) || "?" };
 }

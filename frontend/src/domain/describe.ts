@@ -2,7 +2,7 @@
 import type { BoardCounts } from "./accountability";
 import type { LevelChoice } from "./levels";
 import type { Level } from "./types";
-import { levelWords } from "./words";
+import { levelWords, plural } from "./words";
 
 export function mapInWords(
   counts: BoardCounts,
@@ -18,8 +18,4 @@ export function mapInWords(
     plural(breadcrumbs, "breadcrumb"),
     alarms === 0 ? "no alarm" : plural(alarms, "alarm"),
   ].join(", ");
-}
-
-function plural(count: number, word: string): string {
-  return `${count} ${word}${count === 1 ? "" : "s"}`;
 }

@@ -98,3 +98,8 @@ export function airWords(air_bar: number | null | undefined): string {
 function two(value: number): string {
   return String(value).padStart(2, "0");
 }
+
+/** How many of what: `1 alarm`, `2 alarms`. */
+export function plural(count: number, word: string): string {
+  return `${count} ${word}${count === 1 ? "" : "s"}`;
+}
