@@ -92,10 +92,12 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True):
     Attributes:
         seq: the newest log entry that is in it.
         state: the state, encoded by `backend.tracking`.
+        made_with: the tracker and what it was told, encoded by `backend.tracking`; None: not known.
     """
 
     seq: int
     state: bytes
+    made_with: str | None = None
 
 
 class StaleEpoch(Exception):  # noqa: N818 - names the condition, as the field does

@@ -118,10 +118,10 @@ class SqlLogReader:
 
     def snapshot(self, incident: str) -> Snapshot | None:
         """The newest snapshot of an incident."""
-        query = sa.select(snapshots.c.seq, snapshots.c.state).where(snapshots.c.incident == incident)
+        query = sa.select(snapshots).where(snapshots.c.incident == incident)
         with reading(self._engine) as connection:
             row = connection.execute(query).first()
-        return None if row is None else Snapshot(seq=row.seq, state=row.state)
+        return None if row is None else Snapshot(seq=row.seq, state=row.state, made_with=row.made_with)
 
 
 def _frames(incident: str) -> sa.Select[Any]:

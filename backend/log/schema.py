@@ -74,6 +74,7 @@ snapshots = sa.Table(
     metadata,
     sa.Column("incident", sa.Text, primary_key=True),
     sa.Column("seq", sa.BigInteger, nullable=False),
+    sa.Column("made_with", sa.Text),
     sa.Column("state", sa.LargeBinary, nullable=False),
 )
 

@@ -79,7 +79,7 @@ class Follower:
         self._publication = Publication(head.incident, publish, shown_hz)
         self._news = asyncio.Event()
         self._news_seq = head.last_seq
-        self._stopping = False
+        self._stopping = asyncio.Event()
         self._fold: IncidentFold
         self._keeper: Keeper
         self._storing: asyncio.Task[bool] | None = None
@@ -107,8 +107,12 @@ class Follower:
 
     def stop(self) -> None:
         """Store everything and end."""
-        self._stopping = True
+        self._stopping.set()
         self._news.set()
+
+    async def stopped(self) -> None:
+        """Wait until it is told to stop."""
+        await self._stopping.wait()
 
     async def run(self) -> None:
         """Follow.
@@ -151,9 +155,9 @@ class Follower:
             if not behind and self._publication.lacks(self._fold.seq):
                 await self._estimate(self._fold.prepare)
             at_end = not behind and (self._head.closed or quiet_s >= LEAVE_S)
-            if at_end or self._stopping:
+            if at_end or self._stopping.is_set():
                 await self._show(last=True)
-                if await self._settle() or self._stopping:
+                if await self._settle() or self._stopping.is_set():
                     return
             else:
                 await self._keep(caught_up=not behind, idle=quiet_s >= IDLE_S)
@@ -178,18 +182,16 @@ class Follower:
     async def _restore(self) -> tuple[IncidentFold, int | None]:
         """The fold as it was stored, or a new one; and up to which second rows stay as they were shown."""
         head = self._head
+        span = await asyncio.to_thread(self._reader.frame_span, head.incident)
+        settled = None if span is None else span[1]
         snapshot = await asyncio.to_thread(self._reader.snapshot, head.incident)
-        if snapshot is None:
-            return await self._in_compute(IncidentFold, head.tracker, head.settings, head.live), None
-        try:
-            told = head.tracker, head.settings, head.live
-            fold = await self._in_compute(IncidentFold.restore, snapshot.state, *told)
-        except OtherState as why:
-            log.warning("the log is folded from its start", incident=head.incident, why=str(why))
-            span = await asyncio.to_thread(self._reader.frame_span, head.incident)
-            fold = await self._in_compute(IncidentFold, head.tracker, head.settings, head.live)
-            return fold, None if span is None else span[1]
-        return fold, None
+        told = head.tracker, head.settings, head.live
+        if snapshot is not None:
+            try:
+                return await self._in_compute(IncidentFold.restore, snapshot.state, *told), settled
+            except OtherState as why:
+                log.warning("the log is folded from its start", incident=head.incident, why=str(why))
+        return await self._in_compute(IncidentFold, *told), settled
 
     async def _advance(self) -> bool:
         """Fold one block of the log, if there is one and what waits to be stored leaves room."""
@@ -259,7 +261,9 @@ class Follower:
         row = self._fold.last_row()
         if row is not None:
             self._keeper.take(row)
-        return Snapshot(seq=self._fold.seq, state=self._fold.state())
+        return Snapshot(
+            seq=self._fold.seq, state=self._fold.state(), made_with=self._head.made_with.encoded()
+        )
 
     async def _settle(self) -> bool:
         """Store everything now; False where the database cannot be written."""

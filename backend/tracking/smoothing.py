@@ -129,7 +129,7 @@ class Smoothing:
             TooSlow: it takes long; the work goes on, and asking again later finds it done.
             Unavailable: the process that does it ended.
         """
-        key = (head.incident, head.last_seq, head.settings)
+        key = (head.incident, head.last_seq, head.tracker, head.settings)
         return await self._tracks.get(key, lambda: self._smooth(head), SMOOTH_WITHIN_S, "Smoothing")
 
     async def _smooth(self, head: Head) -> Smoothed:
@@ -151,7 +151,7 @@ class Smoothing:
             TooSlow: it takes long, or other work is in the way.
             Unavailable: the process that does it ended.
         """
-        key = (head.incident, head.last_seq, head.settings, node, t)
+        key = (head.incident, head.last_seq, head.tracker, head.settings, node, t)
         return await self._evidence.get(
             key,
             lambda: self._aside(evidence_of_log, self._url, head, node, t),
@@ -171,7 +171,7 @@ class Smoothing:
             TooSlow: it takes long, or other work is in the way.
             Unavailable: the process that does it ended.
         """
-        key = (head.incident, head.last_seq, head.settings, node)
+        key = (head.incident, head.last_seq, head.tracker, head.settings, node)
         return await self._advice.get(
             key,
             lambda: self._aside(advice_of_log, self._url, head, node),

@@ -128,7 +128,8 @@ class Worker:
         try:
             await follower.run()
             if follower.failed:
-                await self._stop.wait()  # its lease is kept and its picture stands; a restart tries it again
+                # Its lease is kept and its picture stands; a restart tries it again, and other settings do.
+                await follower.stopped()
             if follower.epoch is not None:
                 again_after_s = 0.0
         except StaleEpoch as error:

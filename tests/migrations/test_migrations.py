@@ -4,14 +4,18 @@ import subprocess
 import sys
 from pathlib import Path
 
+import msgspec
 import pytest
 import sqlalchemy as sa
 from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 
 from backend.log.engine import make_engine, writing
+from backend.log.incident import Origin
+from backend.log.incidents import IncidentStore
 from backend.log.migrate import SchemaTooNew, prepare
-from backend.log.schema import metadata
+from backend.log.schema import metadata, snapshots
+from backend.tracking.heads import MadeWith, head_of
 
 ROOT = Path(__file__).parents[2]
 
@@ -62,7 +66,7 @@ def test_preparing_again_changes_nothing(database_url: str) -> None:
     )
     prepare(database_url)
     assert differences(database_url) == []
-    assert revisions(database_url) == ["0001"]
+    assert revisions(database_url) == ["0002"]
 
 
 def test_an_older_database_is_brought_up_to_date(database_url: str) -> None:
@@ -70,7 +74,25 @@ def test_an_older_database_is_brought_up_to_date(database_url: str) -> None:
     execute(database_url, "CREATE TABLE alembic_version (version_num VARCHAR(32) NOT NULL PRIMARY KEY)")
     prepare(database_url)
     assert differences(database_url) == []
-    assert revisions(database_url) == ["0001"]
+    assert revisions(database_url) == ["0002"]
+
+
+def test_older_snapshots_are_taken_to_be_made_with_what_their_incidents_say(database_url: str) -> None:
+    prepare(database_url)
+    engine = make_engine(database_url)
+    incident = IncidentStore(engine).create("x", "live", Origin(lat=59.0, lon=18.0, hae=1.5))
+    execute(
+        database_url,
+        "ALTER TABLE snapshots DROP COLUMN made_with",
+        "INSERT INTO snapshots (incident, seq, state) SELECT id, 0, '' FROM incidents",
+        "UPDATE alembic_version SET version_num = '0001'",
+    )
+    prepare(database_url)
+    with engine.connect() as connection:
+        stored = connection.execute(sa.select(snapshots.c.made_with)).scalar_one()
+    engine.dispose()
+    assert differences(database_url) == []
+    assert msgspec.json.decode(stored, type=MadeWith) == head_of(incident).made_with
 
 
 def test_a_newer_database_is_refused_with_what_to_do(database_url: str) -> None:
@@ -91,7 +113,7 @@ def test_processes_that_start_at_once_migrate_once(database_url: str) -> None:
     processes = [subprocess.Popen([*command, database_url], cwd=ROOT) for _ in range(4)]
     assert [process.wait(60) for process in processes] == [0, 0, 0, 0]
     assert differences(database_url) == []
-    assert revisions(database_url) == ["0001"]
+    assert revisions(database_url) == ["0002"]
 
 
 def test_a_migration_that_fails_leaves_the_database_as_it_was(database_url: str) -> None:

@@ -1,10 +1,8 @@
 """An incident that the estimator cannot fold stands still and says so; the others go on."""
 
 import asyncio
-import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from typing import Self
 
 import pytest
 import sqlalchemy as sa
@@ -12,59 +10,20 @@ import sqlalchemy as sa
 from backend.coordination.base import Answer, Picture, Query
 from backend.coordination.lease import Leases
 from backend.live.record import decode
+from backend.log.base import Snapshot
 from backend.log.derived import SqlDerivedWriter
 from backend.log.engine import writing
 from backend.log.incidents import IncidentStore
 from backend.log.read import SqlLogReader
+from backend.tracking.fold import IncidentFold
 from backend.tracking.follower import Follower
 from backend.tracking.heads import head_of, heads
+from backend.tracking.reading import read_block
 from estimator import trackers
-from estimator.estimate import NodeEstimate, Notice, Relative
 from estimator.measurements import AnyReading, Retire, Status
 from estimator.trackers.base import Tracker, TrackerSettings
-from tests.backend.tracking.conftest import Write
-
-
-class Fragile:
-    """A tracker that counts readings, and breaks at a `retire`, or after one when it is asked."""
-
-    def __init__(self, settings: TrackerSettings, folded: int = 0) -> None:
-        del settings
-        self.folded = folded
-        self.newest_t = 0.0
-        self.lazy = False
-
-    def fold(self, readings: Sequence[AnyReading], known_t: float = math.inf) -> None:
-        assert known_t == math.inf, "a recorded incident goes by its readings"
-        for reading in readings:
-            if isinstance(reading, Retire):
-                raise ZeroDivisionError("a defect")
-            self.lazy = self.lazy or (isinstance(reading, Status) and reading.node == "late-to-break")
-            self.folded += 1
-            self.newest_t = reading.t
-
-    def estimates(self) -> list[NodeEstimate]:
-        if self.lazy:
-            raise ZeroDivisionError("a defect of which nothing is seen until something is asked")
-        return [NodeEstimate(node="ff1", role="responder", t=self.newest_t, speed_mps=float(self.folded))]
-
-    def relative(self, a: str, b: str) -> Relative | None:
-        if b == "nobody":
-            raise KeyError(b)
-        return None if a == "lost" else Relative(delta_m=(1.0, 2.0, 3.0), covariance_m2=(1, 0, 0, 1, 0, 1))
-
-    def take_notices(self) -> list[Notice]:
-        return []
-
-    def counts(self) -> Mapping[str, int]:
-        return {}
-
-    def snapshot(self) -> bytes:
-        return b"%d" % self.folded
-
-    @classmethod
-    def restore(cls, state: bytes) -> Self:
-        return cls(TrackerSettings(), int(state))
+from tests.backend.tracking.conftest import Write, walk
+from tests.backend.tracking.fragile import Fragile
 
 
 @pytest.fixture
@@ -242,3 +201,33 @@ def test_incidents_that_are_folded_to_their_end_are_left_alone(
     assert {head.incident for head in heads(engine, [quiet])} == {quiet, busy}
     write(quiet, [[status(2.0)]])
     assert {head.incident for head in heads(engine, [])} == {quiet, busy}
+
+
+def test_a_kill_while_the_log_is_folded_anew_leaves_what_was_shown(
+    engine: sa.Engine, store: IncidentStore, write: Write, compute: ThreadPoolExecutor
+) -> None:
+    incident = store.create("switched", "recorded").id
+    batches = walk(10)
+    write(incident, batches)
+    reader = SqlLogReader(engine)
+
+    async def to_the_end() -> None:
+        watch = Watch(engine, store, incident, compute)
+        following = asyncio.create_task(watch.follower.run())
+        await watch.shown(len(batches))
+        watch.follower.stop()
+        await following
+
+    asyncio.run(to_the_end())
+    before = list(reader.frames(incident))
+    head = head_of(store.change(incident, {"settings": {"tracker": "paper-a"}}))
+    half = IncidentFold(head.tracker, head.settings)
+    for batch, readings in read_block(reader, incident, 0)[: len(batches) // 2]:
+        assert list(half.fold(batch, readings))
+    epoch = Leases(lambda: writing(engine), "north").acquire(incident)
+    assert epoch is not None
+    SqlDerivedWriter(engine).save(incident, epoch, [], Snapshot(seq=half.seq, state=half.state()))
+    asyncio.run(to_the_end())
+    after = list(reader.frames(incident))
+    assert after[: len(before) - 1] == before[:-1]
+    assert after[-1] != before[-1]

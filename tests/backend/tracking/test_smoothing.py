@@ -3,11 +3,15 @@
 import asyncio
 import multiprocessing
 
+import msgspec
 import pytest
 
 from backend.errors import TooSlow
 from backend.tracking import smoothing
+from backend.tracking.aside import smooth_log
+from backend.tracking.heads import Head
 from backend.tracking.smoothing import Kept, Smoothing
+from estimator.trackers.base import TrackerSettings
 
 
 class Counted:
@@ -130,3 +134,27 @@ def test_who_ends_before_it_is_prepared_starts_no_process() -> None:
         assert not multiprocessing.active_children()
 
     asyncio.run(begins_and_ends())
+
+
+def test_what_one_tracker_said_is_not_told_of_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def in_this_process(_: Smoothing, function: object, _url: str, head: Head, *__: object) -> object:
+        return msgspec.msgpack.encode({head.tracker: []}) if function is smooth_log else head.tracker
+
+    monkeypatch.setattr(Smoothing, "_aside", in_this_process)
+
+    async def ask() -> None:
+        aside = Smoothing("sqlite://")
+        for tracker in ("paper-a", "kirchhoff"):
+            head = Head(
+                incident="i",
+                closed=False,
+                last_seq=1,
+                tracker=tracker,
+                settings=TrackerSettings(),
+                live=False,
+            )
+            assert await aside.smoothed(head) == {tracker: []}
+            told: list[object] = [await aside.evidence(head, "ff1", None), await aside.advice(head, "ff1")]
+            assert told == [tracker, tracker]
+
+    asyncio.run(ask())

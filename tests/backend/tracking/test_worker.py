@@ -1,5 +1,7 @@
 """The worker as a process of its own, on a real database."""
 
+import asyncio
+import math
 import os
 import random
 import signal
@@ -7,10 +9,11 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+import pytest
 import sqlalchemy as sa
 
 from backend.live.record import decode
@@ -18,7 +21,14 @@ from backend.log.base import RecordedFrame
 from backend.log.incidents import IncidentStore
 from backend.log.read import SqlLogReader
 from backend.log.schema import leases
+from backend.tracking import worker as worker_module
+from backend.tracking.heads import head_of
+from backend.tracking.worker import Worker
+from estimator import trackers
+from estimator.measurements import AnyReading, Retire, Status
+from estimator.trackers.base import Tracker, TrackerSettings
 from tests.backend.tracking.conftest import Write, walk
+from tests.backend.tracking.fragile import Fragile
 from tests.running import eventually
 
 
@@ -148,6 +158,50 @@ def test_new_settings_are_used_for_everything_and_what_was_shown_stays(
     after = rows(engine, incident)
     assert after[: len(before) - 1] == before[:-1]
     assert after[-1].second > before[-1].second
+
+
+def test_another_tracker_folds_what_the_first_broke_at(
+    sqlite_url: str,
+    engine: sa.Engine,
+    store: IncidentStore,
+    write: Write,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    create = trackers.create
+    broke = threading.Event()
+
+    class Breaking(Fragile):
+        def fold(self, readings: Sequence[AnyReading], known_t: float = math.inf) -> None:
+            broke.set()
+            super().fold(readings, known_t)
+
+    def fragile_or_whole(name: str, settings: TrackerSettings) -> Tracker:
+        return Breaking(settings) if name == "kirchhoff" else create(name, settings)
+
+    monkeypatch.setattr(trackers, "create", fragile_or_whole)
+    monkeypatch.setattr(worker_module, "warm_up", lambda: None)
+    incident = store.create("broken", "recorded").id
+    write(incident, [[Status(t=1.0, node="ff1", battery=0.5), Retire(t=2.0, node="ff1")]])
+
+    def switch() -> None:
+        broke.wait(20.0)
+        head = head_of(store.change(incident, {"settings": {"tracker": "paper-a"}}))
+        try:
+            eventually(lambda: made_with(engine, incident) == head.made_with.encoded())
+        finally:
+            signal.raise_signal(signal.SIGTERM)
+
+    async def go() -> None:
+        switching = asyncio.create_task(asyncio.to_thread(switch))
+        await Worker(sqlite_url, None, "", "north", shown_hz=10.0).run()
+        await switching
+
+    asyncio.run(go())
+
+
+def made_with(engine: sa.Engine, incident: str) -> str | None:
+    snapshot = SqlLogReader(engine).snapshot(incident)
+    return None if snapshot is None else snapshot.made_with
 
 
 def test_another_worker_takes_over_when_the_first_falls_silent(
