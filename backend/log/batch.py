@@ -3,6 +3,7 @@
 import msgspec
 
 from backend.log.base import LoggedBatch
+from backend.log.surrogates import whole_characters
 from estimator.measurements import AnyReading
 from estimator.measurements.base import EpochSeconds, Identifier
 
@@ -47,6 +48,25 @@ decode_sealed_batch = msgspec.json.Decoder(SealedBatch).decode
 decode_reading = msgspec.json.Decoder(AnyReading).decode
 
 
+def take_apart(body: bytes) -> tuple[RawBatch, frozenset[int]]:
+    """A batch with its readings each by itself, and the indices of those that hold half a character.
+
+    Raises:
+        msgspec.DecodeError: it is no JSON even with whole characters, or no batch.
+    """
+    try:
+        return decode_raw_batch(body), frozenset()
+    except msgspec.ValidationError:
+        raise
+    except msgspec.DecodeError:
+        whole = whole_characters(body)
+        if whole is None:
+            raise
+    first, second = (decode_raw_batch(text) for text in whole)
+    pairs = zip(first.readings, second.readings, strict=True)
+    return first, frozenset(index for index, (one, other) in enumerate(pairs) if bytes(one) != bytes(other))
+
+
 def accepted_readings(logged: LoggedBatch) -> list[AnyReading]:
     """The readings of a logged batch that go to the estimator, in their order.
 
@@ -55,11 +75,12 @@ def accepted_readings(logged: LoggedBatch) -> list[AnyReading]:
     if not logged.rejected:
         try:
             return decode_batch(logged.body).readings
-        except msgspec.ValidationError:
+        except msgspec.DecodeError:
             pass
-    aside = {fault.index for fault in logged.rejected}
+    batch, halved = take_apart(logged.body)
+    aside = halved | {fault.index for fault in logged.rejected}
     readings: list[AnyReading] = []
-    for index, raw in enumerate(decode_raw_batch(logged.body).readings):
+    for index, raw in enumerate(batch.readings):
         if index not in aside:
             try:
                 readings.append(decode_reading(raw))

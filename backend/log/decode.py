@@ -8,7 +8,7 @@ from operator import attrgetter
 import msgspec
 
 from backend.errors import FieldError, NotUnderstood, TooLarge
-from backend.log.batch import Batch, decode_batch, decode_raw_batch, decode_reading
+from backend.log.batch import Batch, decode_batch, decode_reading, take_apart
 from estimator.measurements import AnyReading
 from estimator.measurements.base import EpochSeconds, SelfReading
 
@@ -69,9 +69,9 @@ def judge(body: bytes, max_readings: int, now: float | None) -> Judged:
     """
     try:
         batch = decode_batch(body)
-    except msgspec.ValidationError:
+    except msgspec.DecodeError:
         return _judge_each(body, max_readings, now)
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (UnicodeDecodeError, RecursionError) as error:
         raise _no_json(error) from error
     _check_count(len(batch.readings), max_readings)
     late_limit = _horizon(batch.sent, now)
@@ -90,7 +90,7 @@ def _judge_each(body: bytes, max_readings: int, now: float | None) -> Judged:
     """The slow way, taken where at least one reading is to be set aside, or the batch itself is none."""
     try:
         body.decode()  # readings are cut out unread, so that bytes which are no text would pass
-        batch = decode_raw_batch(body)
+        batch, halved = take_apart(body)
     except msgspec.ValidationError as error:
         fault = explain(error)
         raise NotUnderstood(f"The body is no batch of readings: {fault.message}", [fault]) from error
@@ -101,6 +101,9 @@ def _judge_each(body: bytes, max_readings: int, now: float | None) -> Judged:
     accepted: list[AnyReading] = []
     rejected: list[FieldError] = []
     for index, raw in enumerate(batch.readings):
+        if index in halved:
+            rejected.append(_half_a_character(index))
+            continue
         try:
             reading = decode_reading(raw)
         except msgspec.ValidationError as error:
@@ -144,6 +147,14 @@ def explain(error: msgspec.ValidationError, index: int | None = None) -> FieldEr
     if len(message) > MAX_MESSAGE:
         message = message[: MAX_MESSAGE - 1] + "…"
     return FieldError(code=code, message=message, index=index, field=field[:100] or None)
+
+
+def _half_a_character(index: int) -> FieldError:
+    return FieldError(
+        code="half_a_character",
+        message="an escape such as `\\ud83d` stands without its other half: cut texts between characters",
+        index=index,
+    )
 
 
 def _no_json(error: Exception) -> NotUnderstood:

@@ -8,6 +8,7 @@ from msgspec import Meta
 from backend.errors import FieldError, NotUnderstood
 from backend.log.base import LoggedBatch
 from backend.log.batch import decode_sealed_batch
+from backend.log.surrogates import decode_sealed
 from estimator.measurements.base import EpochSeconds, Identifier
 
 
@@ -48,7 +49,7 @@ def log_line(logged: LoggedBatch) -> bytes:
 
     Line breaks between tokens become spaces, so that a line stays a line (inside strings JSON has none).
     """
-    readings = bytes(decode_sealed_batch(logged.body).readings)
+    _, readings = decode_sealed(decode_sealed_batch, logged.body)
     return (
         msgspec.json.encode(
             Line(
@@ -75,6 +76,7 @@ def parse_line(line: bytes) -> Line:
         NotUnderstood: the line is no JSON, or no batch.
     """
     try:
-        return _decode(line)
+        parsed, readings = decode_sealed(_decode, line)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise NotUnderstood(f"The line is no batch of a recorded log: {error}") from error
+    return msgspec.structs.replace(parsed, readings=msgspec.Raw(readings))

@@ -95,3 +95,17 @@ def test_a_database_that_is_away_is_a_503_and_no_cut_body(
     answer = client.get(f"/api/v1/incidents/{incident}/log")
     assert answer.status_code == 503
     (tmp_path / "firethread.db").rmdir()
+
+
+def test_a_text_that_was_cut_within_a_character_goes_out_and_in_as_it_came(
+    client: TestClient, gateway: Field
+) -> None:
+    readings = rb'[{"kind":"altitude","t":1,"node":"n","up_m":1},"cut \ud83d","whole \ud83d\ude00"]'
+    first, second = gateway.incident(), gateway.incident()
+    assert gateway.post(first, b'{"gateway":"g","batch":"b","readings":%s}' % readings).status == 202
+    (line,) = client.get(f"/api/v1/incidents/{first}/log").content.splitlines()
+    assert readings in line
+    assert gateway.post(second, parse_line(line).body()).status == 202
+    (again,) = client.get(f"/api/v1/incidents/{second}/log").content.splitlines()
+    assert readings in again
+    assert [fault["index"] for fault in json.loads(again)["rejected"]] == [1, 2]

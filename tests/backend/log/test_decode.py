@@ -11,6 +11,7 @@ from backend.errors import NotUnderstood, TooLarge
 from backend.log.base import LoggedBatch
 from backend.log.batch import accepted_readings
 from backend.log.decode import MAX_MESSAGE, Judged, _judge_each, judge
+from estimator.measurements import Alarm
 
 GOOD: list[dict[str, Any]] = [
     {"kind": "range", "t": 100.0, "a": "ff1", "b": "b3", "range_m": 7.31},
@@ -246,6 +247,45 @@ def test_a_damaged_batch_is_a_batch_or_not_understood(data: st.DataObject) -> No
     else:
         body.decode()
         assert len(accepted_readings(row(bytes(body), result))) == len(result.accepted)
+
+
+HALVES = [
+    r"x\ud83d",
+    r"\udc00",
+    r"\ud83d\ud83d",
+    r"\ud83d\u0041",
+    r"\\\uD83Dx",
+    r"\ude00\ud83d",
+    "x" * 90 + r"\ud83d",
+]
+
+
+def alarm(text: str) -> str:
+    return f'{{"kind":"alarm","t":1,"node":"ff1","alarm":"mayday","state":"raised","text":"{text}"}}'
+
+
+@pytest.mark.parametrize("half", HALVES)
+def test_a_text_that_was_cut_within_a_character_sets_its_reading_aside_only(half: str) -> None:
+    cut = [alarm(half), f'{{"{half}":1}}', f'"{half}"']
+    sound = [alarm("trapped"), alarm(r"\ud83d\ude00"), alarm(r"\\ud83d"), alarm(r"\ufffd")]
+    body = f'{{"gateway":"g","batch":"b","readings":[{",".join([*cut, *sound])}]}}'
+    result = judge(body.encode(), 10, None)
+    assert [(fault.index, fault.code) for fault in result.rejected] == [
+        (index, "half_a_character") for index in range(len(cut))
+    ]
+    texts = [reading.text for reading in result.accepted if isinstance(reading, Alarm)]
+    assert texts == ["trapped", "\U0001f600", r"\ud83d", "\ufffd"]
+    assert accepted_readings(row(body.encode(), result)) == list(result.accepted)
+
+
+def test_what_is_cut_short_or_has_half_a_character_around_its_readings_is_refused() -> None:
+    for body, told in (
+        (r'{"gateway":"g","batch":"b","readings":["\ud83d', "truncated"),
+        (r'{"gateway":"g\ud83d","batch":"b","readings":[]}', "`gateway`"),
+        (r'{"gateway":"g","batch":"b","readings":[],"\ud83d":1}', "unknown field"),
+    ):
+        with pytest.raises(NotUnderstood, match=told):
+            judge(body.encode(), 10, None)
 
 
 def test_readings_that_a_later_version_refuses_are_left_out_of_an_old_log() -> None:
