@@ -9,6 +9,7 @@ from fastapi import FastAPI
 
 from backend import api_docs, openapi, problems
 from backend.authentication import Authentication, session_router
+from backend.body_limit import BodyLimit
 from backend.coordination.web_link import WebLink
 from backend.health import health_router
 from backend.incidents.routes import incidents_router
@@ -99,5 +100,6 @@ def build_app(settings: Settings, *, token: str | None, link: socket.socket, lin
     openapi.install(app)
     api_docs.install(app)
     app.mount("/", Screen(), name="screen")
+    app.add_middleware(BodyLimit, telemetry=app.state.telemetry)
     app.add_middleware(Authentication, token=token)
     return app

@@ -72,12 +72,14 @@ REFUSALS = {
     401: "An access token is needed",
     404: "There is nothing under that name",
     409: "The request contradicts what is there",
+    413: "The request is too large",
     422: "A field or parameter is not valid",
     503: "A part that is needed is not available",
     504: "What was waited for did not come in time",
 }
 OF_EVERY_ROUTE = (400, 401, 422, 503)
 OF_ONE_INCIDENT = (404, 409, 504)
+OF_A_BODY = (413,)
 
 
 def complete(document: dict[str, Any]) -> dict[str, Any]:
@@ -93,7 +95,7 @@ def complete(document: dict[str, Any]) -> dict[str, Any]:
         if path.startswith("/api/"):
             statuses = OF_EVERY_ROUTE + (OF_ONE_INCIDENT if "{incident}" in path else ())
             for operation in operations.values():
-                for status in statuses:
+                for status in statuses + (OF_A_BODY if "requestBody" in operation else ()):
                     operation["responses"][str(status)] = {
                         "description": REFUSALS[status],
                         "content": {PROBLEM_MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}},
