@@ -13,6 +13,7 @@ from backend.authentication import Authentication, access_token
 from backend.ingest.front import TelemetryFirst
 from backend.interpreter import tune_for_serving
 from backend.main import build_app
+from backend.open_files import raise_open_files
 from backend.settings import LINK_TOKEN_VARIABLE, Settings
 from backend.supervision import Child
 
@@ -77,6 +78,7 @@ def serve(settings: Settings) -> None:
         ConfigurationRefused: settings that would be unsafe or cannot work.
     """
     check(settings)
+    raise_open_files()
     settings.data.mkdir(parents=True, exist_ok=True)
     listener, link = listen(settings.host, settings.port), listen(*_split(settings.link))
     url = url_of(listener)
@@ -89,7 +91,7 @@ def serve(settings: Settings) -> None:
         TelemetryFirst(app, telemetry, Authentication(telemetry.handle, token)),
         proxy_headers=False,
         loop="uvloop",
-        http="httptools",
+        http="backend.http_protocol:HeaderWithin",
         ws="backend.live.push_protocol:PushProtocol",
         ws_per_message_deflate=False,
         ws_max_size=64 * 1024,
