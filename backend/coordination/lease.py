@@ -10,6 +10,8 @@ from contextlib import AbstractContextManager
 
 import sqlalchemy as sa
 
+from backend.coordination.instance import Instance, holder_text, parse_holder
+
 LEASE_S = 10.0
 RENEW_S = 3.0
 
@@ -31,20 +33,27 @@ class Leases:
 
     Args:
         begin: opens a transaction that writes; what it raises where the database is away goes through.
-        holder: the worker's name. One that starts again under its name takes its leases at once.
+        holder: the worker's name. One that starts again under its name takes its leases at once, unless the
+            process that had them still runs, or ran on another machine.
         lease_s: how long a lease holds without being renewed (s).
+        instance: the worker's process.
     """
 
-    def __init__(self, begin: Begin, holder: str, lease_s: float = LEASE_S) -> None:
+    def __init__(
+        self, begin: Begin, holder: str, lease_s: float = LEASE_S, instance: Instance | None = None
+    ) -> None:
         self._begin = begin
-        self._holder = holder
+        self._name = holder
+        self._instance = instance or Instance.this()
+        self._holder = holder_text(holder, self._instance)
         self._lease_s = lease_s
 
     def acquire(self, incident: str) -> int | None:
         """Take the lease of an incident.
 
         Returns:
-            Its new epoch; None where another holder's lease has not expired.
+            Its new epoch; None where another's lease has not expired, unless that one held it under this name
+            and is sure to have ended.
         """
         with self._begin() as connection:
             now = _now(connection)
@@ -61,7 +70,7 @@ class Leases:
                 }
                 result = connection.execute(_insert_if_absent, values)
                 return 1 if result.rowcount == 1 else None
-            if row.holder != self._holder and row.expires > now:
+            if row.expires > now and not self._may_go_on_from(row.holder):
                 return None
             epoch: int = row.epoch + 1
             connection.execute(
@@ -70,6 +79,12 @@ class Leases:
                 .values(holder=self._holder, epoch=epoch, expires=now + self._lease_s)
             )
             return epoch
+
+    def _may_go_on_from(self, holder: str) -> bool:
+        name, instance = parse_holder(holder)
+        if name != self._name:
+            return False
+        return instance is None or instance == self._instance or instance.ended(self._instance)
 
     def renew(self, held: Iterable[tuple[str, int]]) -> set[str]:
         """Renew leases, in one transaction.

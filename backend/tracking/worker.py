@@ -22,8 +22,9 @@ from estimator.warm import warm_up
 POLL_S = 0.5
 """The log is looked at so often even if no wake-up comes: the link may be down."""
 
-AGAIN_AFTER_S = 5.0
-"""An incident that another worker holds, or that could not be begun, is tried again after so long."""
+AGAIN_AFTER_S = 1.0
+"""An incident that another worker holds, or that could not be begun, is tried again after so long: one that
+is told to stop gives its leases back within that time, and whoever takes its place goes on at once."""
 
 STOP_WITHIN_S = 4.0
 
@@ -41,7 +42,8 @@ def run_worker(
         database_url: SQLAlchemy URL of the log.
         link_address: `host:port` of the web process's link; None: nobody is told, the rows are stored.
         token: the deployment's link token.
-        holder: this worker's name: one that is started again under it takes its incidents at once.
+        holder: this worker's name: one that is started again under it takes its incidents at once, unless the
+            process that had them still runs.
         shown_hz: how often a picture may be published, per incident.
     """
     asyncio.run(Worker(database_url, link_address, token, holder, shown_hz).run())

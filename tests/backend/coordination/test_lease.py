@@ -1,5 +1,8 @@
 """One worker follows an incident, and only its writes count."""
 
+import os
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -7,12 +10,14 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 import sqlalchemy as sa
 
+from backend.coordination.instance import Instance
 from backend.coordination.lease import Leases
 from backend.log.base import RecordedFrame, Snapshot, StaleEpoch
 from backend.log.derived import SqlDerivedWriter
 from backend.log.engine import make_engine, writing
 from backend.log.migrate import prepare
 from backend.log.read import SqlLogReader
+from backend.log.schema import leases as table
 
 ROW = RecordedFrame(second=1, seq=1, received=1.0, record=b"row")
 
@@ -40,6 +45,43 @@ def test_a_worker_that_starts_again_under_its_name_takes_its_incident_at_once(
     leases: Callable[..., Leases],
 ) -> None:
     assert [leases("north").acquire("i1") for _ in range(3)] == [1, 2, 3]
+
+
+def test_of_two_under_one_name_the_one_that_lives_keeps_its_incident(engine: sa.Engine) -> None:
+    here = Instance.this()
+    parent = Leases(lambda: writing(engine), "north", 30.0, Instance(here.host, os.getppid(), "p"))
+    own = Leases(lambda: writing(engine), "north", 30.0)
+    assert parent.acquire("i1") == 1
+    assert own.acquire("i1") is None
+    parent.release("i1", 1)
+    assert own.acquire("i1") == 2
+    assert parent.acquire("i1") is None
+
+
+def test_what_ended_under_the_name_gives_way_at_once(engine: sa.Engine) -> None:
+    here = Instance.this()
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait()
+    # A container that starts again gives its processes the numbers that they had.
+    for epoch, before in enumerate((Instance(here.host, ended.pid, "x"), Instance(here.host, here.pid, "x"))):
+        assert Leases(lambda: writing(engine), "north", 30.0, before).acquire("i1") == 2 * epoch + 1
+        assert Leases(lambda: writing(engine), "north", 30.0).acquire("i1") == 2 * epoch + 2
+        Leases(lambda: writing(engine), "north", 30.0).release("i1", 2 * epoch + 2)
+
+
+def test_of_another_machine_only_silence_tells(engine: sa.Engine) -> None:
+    elsewhere = Leases(lambda: writing(engine), "north", 30.0, Instance("elsewhere", 1, "x"))
+    assert elsewhere.acquire("i1") == 1
+    assert Leases(lambda: writing(engine), "north").acquire("i1") is None
+
+
+def test_a_lease_that_an_older_version_took_is_its_names(engine: sa.Engine) -> None:
+    with writing(engine) as connection:
+        connection.execute(
+            sa.insert(table).values(incident="i1", holder="north", epoch=4, expires=time.time() + 30.0)
+        )
+    assert Leases(lambda: writing(engine), "south").acquire("i1") is None
+    assert Leases(lambda: writing(engine), "north").acquire("i1") == 5
 
 
 def test_a_silent_workers_incident_is_taken_by_another(leases: Callable[..., Leases]) -> None:
