@@ -38,6 +38,7 @@ class LagRecord(msgspec.Struct, frozen=True, array_like=True):
         notices: noticed in each tick.
         given: notices of each tick that were taken.
         loose: notices not taken yet that belong to no tick.
+        late: see `Lag`.
     """
 
     newest_t: float | None
@@ -48,6 +49,7 @@ class LagRecord(msgspec.Struct, frozen=True, array_like=True):
     notices: dict[int, list[Notice]]
     given: dict[int, list[Notice]]
     loose: list[Notice]
+    late: dict[str, int] = msgspec.field(default_factory=dict)
 
 
 class Lag:
@@ -58,6 +60,7 @@ class Lag:
         newest_t: newest epoch so far, but none that was still to come; None before the first reading.
         too_late: readings that came too late.
         received: all readings.
+        late: of those that came too late, how many name each node first.
     """
 
     def __init__(self, lag_s: float, state: FusionState) -> None:
@@ -65,6 +68,7 @@ class Lag:
         self.newest_t: float | None = None
         self.too_late = 0
         self.received = 0
+        self.late: dict[str, int] = {}
         self._ticks: list[int] = []
         self._readings: dict[int, list[AnyFolded]] = {}
         self._checkpoints: list[tuple[int, FusionState]] = [(-1, state)]
@@ -78,6 +82,7 @@ class Lag:
         """The lag that a record and its states were made of."""
         lag = cls(lag_s, states[0])
         lag.newest_t, lag.too_late, lag.received = record.newest_t, record.too_late, record.received
+        lag.late = dict(record.late)
         lag._ticks = [tick for tick, _ in record.readings]
         lag._readings = {tick: list(readings) for tick, readings in record.readings}
         lag._checkpoints = list(zip(record.checkpoints, states, strict=True))
@@ -103,6 +108,7 @@ class Lag:
             self._notices,
             self._given,
             self._loose,
+            dict(self.late),
         )
         return record, [state for _, state in checkpoints]
 
@@ -113,13 +119,16 @@ class Lag:
             readings: in any order of epochs.
             known_t: when they came, by a clock that can be trusted (s): by no later epoch others are late.
         """
-        late: dict[str, list[AnyFolded]] = {}
+        missed: dict[str, AnyFolded] = {}
         self.received += len(readings)
         in_order = sorted(((r.until_t, r) for r in in_pieces(readings)), key=itemgetter(0))
         for until_t, reading in in_order:
             if self.newest_t is not None and until_t < self.newest_t - self.lag_s:
-                self.too_late += int(not isinstance(reading, Samples) or reading.last)
-                late.setdefault(names_of(reading)[0], []).append(reading)
+                if not isinstance(reading, Samples) or reading.last:
+                    node = names_of(reading)[0]
+                    self.too_late += 1
+                    self.late[node] = self.late.get(node, 0) + 1
+                    missed[node] = reading
                 continue
             newest_t = min(until_t, known_t)
             self.newest_t = newest_t if self.newest_t is None else max(self.newest_t, newest_t)
@@ -130,9 +139,10 @@ class Lag:
             self._readings[tick].append(reading)
             if tick <= self._folded:
                 self._roll_back(tick)
-        for node, missed in late.items():
-            text = f"{len(missed)} readings came more than {self.lag_s:g} s late and are not fused"
-            self._loose.append(Notice(code="too_late", t=missed[-1].t, node=node, text=text))
+        for node, newest in missed.items():
+            self._loose.append(
+                Notice(code="too_late", t=newest.t, node=node, text=_too_late(self.late[node], self.lag_s))
+            )
 
     def _roll_back(self, tick: int) -> None:
         while self._checkpoints[-1][0] >= tick:
@@ -206,3 +216,9 @@ class Lag:
                 taken.extend(fresh)
                 self._given.setdefault(tick, []).extend(fresh)
         return taken
+
+
+def _too_late(count: int, lag_s: float) -> str:
+    """What is said of a node: a notice takes the place of the one before, so that it counts all so far."""
+    came = "1 reading so far came" if count == 1 else f"{count} readings so far came"
+    return f"{came} more than {lag_s:g} s late and {'is' if count == 1 else 'are'} not fused"

@@ -57,3 +57,19 @@ def test_an_epoch_that_is_still_to_come_makes_nothing_late_and_is_held_once_its_
     assert shown["ff2"] == pytest.approx((5.0, 5.0, 0.0), abs=1.0)
     assert tracker.counts()["too_late"] == 0
     assert KirchhoffTracker.restore(tracker.snapshot()).estimates() == tracker.estimates()
+
+
+def test_what_came_too_late_is_counted_over_all_calls_and_restarts() -> None:
+    tracker = KirchhoffTracker()
+    tracker.fold(walk(STEPS))
+    tracker.take_notices()
+    told = []
+    for t in (10.0, 11.0, 12.0):
+        tracker.fold([Displacement(t=t, node="ff1", delta_m=(1.0, 0.0, 0.0))])
+        told += [notice.text for notice in tracker.take_notices()]
+        tracker = KirchhoffTracker.restore(tracker.snapshot())
+    assert told == [
+        "1 reading so far came more than 60 s late and is not fused",
+        "2 readings so far came more than 60 s late and are not fused",
+        "3 readings so far came more than 60 s late and are not fused",
+    ]
