@@ -27,6 +27,7 @@ from estimator.graph.variable import Variable
 from estimator.inertial.advancing import advance
 from estimator.inertial.boot import Boot
 from estimator.inertial.loose import tell
+from estimator.inertial.repeating import sift, unwatched
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
@@ -67,6 +68,7 @@ def warm_up() -> None:
     taken = advance(boot, rests, np.zeros((60, 3)), 0.01)
     advance(boot, rests[taken:], np.zeros((60, 3))[taken:], 0.01)
     tell(boot, 0.5)
+    sift(unwatched(), np.zeros((0, 6)), np.zeros((2, 6)), 0, 0.01)
     predict_bearing(place, place, one)
     wrap(one)
     weigh(one, one, one, *strided)

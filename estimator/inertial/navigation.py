@@ -24,6 +24,7 @@ from estimator.inertial.boot import (
 from estimator.inertial.holding import UNHELD_S
 from estimator.inertial.levelling import ALIGN_S
 from estimator.inertial.loose import tell
+from estimator.inertial.repeating import sift, unwatched
 from estimator.inertial.resting import TOLD_AFTER_S
 from estimator.inertial.samples import Samples
 from estimator.inertial.strapdown import ATTITUDE_WALK, FORCE_SIGMA_MPS2, SCALE_SIGMA
@@ -83,6 +84,9 @@ class Navigation(NamedTuple):
         unsure_m2: variance of its place by what has been bridged since `told_t` (m²).
         jitter_s2: variance of the epochs that its gateway gives (s²).
         newest: its newest sample, 6 (m/s², rad/s).
+        watch: what has been seen of it, see `repeating.watched`.
+        waiting: its newest samples which may turn out to be no readings, k × 6: they are not in `boot`.
+        missing: so many before these are missing, and `boot` has not been told yet.
         boot: its strapdown navigation; its place counts from where it was at `told_t`.
     """
 
@@ -92,13 +96,16 @@ class Navigation(NamedTuple):
     unsure_m2: float
     jitter_s2: float
     newest: Array
+    watch: Array
+    waiting: Array
+    missing: int
     boot: Boot
 
     @classmethod
     def new(cls, t: float, heading_rad: float) -> Self:
         """That of a boot of which nothing is known at `t` but what its x axis faces."""
-        boot = Boot.new(heading_rad)
-        return cls(t, t, heading_rad, 0.0, JITTER_S**2, np.zeros(6), boot)
+        began = t, t, heading_rad, 0.0, JITTER_S**2
+        return cls(*began, np.zeros(6), unwatched(), np.zeros((0, 6)), 0, Boot.new(heading_rad))
 
 
 class Navigated(NamedTuple):
@@ -137,8 +144,17 @@ def navigate(before: Navigation | None, piece: Samples, heading_rad: float) -> N
             return Navigated(known, [], 0.0, "samples of this time were reported before")
         off_s = 0.0
     samples, known, turned = _joined(known, off_s, step_s, samples)
-    found, after, told = _led(known, piece.node, samples, step_s)
-    return Navigated(after, found, turned, told)
+    sifted = sift(known.watch, known.waiting, samples, known.missing, step_s)
+    found, texts, end_t = list[Led](), [sifted.text], known.t + len(samples) * step_s
+    known = known._replace(t=known.t - len(known.waiting) * step_s)
+    for missing, some in sifted.parts:
+        if missing:
+            known, more = _lost(known, step_s * (missing - known.missing), step_s * missing)
+            turned += more
+        led, known, told = _led(known, piece.node, some, step_s)
+        found, texts = found + led, [told, *texts]
+    known = known._replace(t=end_t, watch=sifted.watch, waiting=sifted.waiting, missing=sifted.missing)
+    return Navigated(known, found, turned, next((text for text in texts if text is not None), None))
 
 
 def _joined(
@@ -159,9 +175,9 @@ def _joined(
         return samples, known._replace(t=known.t + FOLLOWED * off_s, jitter_s2=jitter_s2), 0.0
     missing = round(off_s / step_s)
     if off_s > BRIDGED_S or not known.boot.levelled:
-        turned = min(TURNS_RADPS * off_s, TURNED_RAD + TURNED_RADPS * off_s, ANYWHERE_RAD)
-        t = known.t + off_s
-        return samples, known._replace(t=t, told_t=t, unsure_m2=0.0, boot=known.boot.anew()), turned**2
+        gone = known.missing + len(known.waiting)
+        known, turned_rad2 = _lost(known, off_s, off_s + gone * step_s)
+        return samples, known._replace(waiting=known.waiting[:0]), turned_rad2
     shares = (np.arange(1, missing + 1) / (missing + 1.0))[:, None]
     bridge = before + shares * (samples[0] - before)
     velocity, rate = known.boot.held.velocity, bridge[:, 3:]
@@ -177,6 +193,18 @@ def _joined(
         t=known.t + off_s - missing * step_s, unsure_m2=known.unsure_m2 + lost_m2, boot=boot
     )
     return np.vstack([bridge, samples]), known, turned_rad2
+
+
+def _lost(known: Navigation, ahead_s: float, gone_s: float) -> tuple[Navigation, float]:
+    """Go on after missing samples, `ahead_s` from where it is; none have told anything for `gone_s`.
+
+    Returns:
+        Where it goes on; the variance of its heading by what is missing (rad²).
+    """
+    turned = min(TURNS_RADPS * gone_s, TURNED_RAD + TURNED_RADPS * gone_s, ANYWHERE_RAD)
+    t = known.t + ahead_s
+    known = known._replace(t=t, told_t=t, unsure_m2=0.0, missing=0, boot=known.boot.anew())
+    return known, turned**2
 
 
 def _led(
