@@ -56,6 +56,10 @@ TURNS_RADPS, TURNED_RAD, TURNED_RADPS, ANYWHERE_RAD = 3.0, 1.0, 0.1, 1.8
 """While samples are missing their bearer may turn on his heel; then he mostly goes on; in the end he may face
 anything, which is 1.8 rad."""
 
+REPORTED = "samples of this time were reported before"
+BEGUN_MOST = 8
+"""Of so many readings at once it is known that a part was new."""
+
 
 class Led(Displacement, tag="led", frozen=True):
     """A displacement that samples have made: it counts with them.
@@ -86,6 +90,7 @@ class Navigation(NamedTuple):
         newest: its newest sample, 6 (m/s², rad/s).
         watch: what has been seen of it, see `repeating.watched`.
         waiting: its newest samples which may turn out to be no readings, k × 6: they are not in `boot`.
+        begun: when readings begin of which a part was new, and whose last piece is still to come, n (s).
         missing: so many before these are missing, and `boot` has not been told yet.
         boot: its strapdown navigation; its place counts from where it was at `told_t`.
     """
@@ -98,6 +103,7 @@ class Navigation(NamedTuple):
     newest: Array
     watch: Array
     waiting: Array
+    begun: Array
     missing: int
     boot: Boot
 
@@ -105,7 +111,8 @@ class Navigation(NamedTuple):
     def new(cls, t: float, heading_rad: float) -> Self:
         """That of a boot of which nothing is known at `t` but what its x axis faces."""
         began = t, t, heading_rad, 0.0, JITTER_S**2
-        return cls(*began, np.zeros(6), unwatched(), np.zeros((0, 6)), 0, Boot.new(heading_rad))
+        empty = np.zeros((0, 6)), np.zeros(0)
+        return cls(*began, np.zeros(6), unwatched(), *empty, 0, Boot.new(heading_rad))
 
 
 class Navigated(NamedTuple):
@@ -116,12 +123,14 @@ class Navigated(NamedTuple):
         displacements: in order of epoch, in the frame whose x axis the boot faced at the start.
         turned_rad2: variance of its heading by samples that are missing, or may be, before it (rad²).
         text: why samples could not be used, if they could not.
+        taken: whether a part of its reading was of use, up to this piece.
     """
 
     navigation: Navigation
     displacements: list[Led]
     turned_rad2: float
     text: str | None
+    taken: bool = False
 
 
 def navigate(before: Navigation | None, piece: Samples, heading_rad: float) -> Navigated:
@@ -132,7 +141,17 @@ def navigate(before: Navigation | None, piece: Samples, heading_rad: float) -> N
         piece: the samples.
         heading_rad: direction of the sensor's x axis at rest, seen from above, where the node is new.
     """
-    known = before or Navigation.new(piece.t, heading_rad)
+    done = _navigated(before or Navigation.new(piece.t, heading_rad), piece)
+    known, text = done.navigation, done.text
+    others = known.begun[known.begun != piece.first_t]
+    taken = text is None or bool(done.displacements) or len(others) < len(known.begun)
+    if text == REPORTED and (taken or not piece.last):
+        text = None  # What overlaps is nothing new; what brings nothing else is said to.
+    begun = others if piece.last or not taken else np.append(others, piece.first_t)[-BEGUN_MOST:]
+    return done._replace(navigation=known._replace(begun=begun), text=text, taken=taken)
+
+
+def _navigated(known: Navigation, piece: Samples) -> Navigated:
     if piece.rate_hz < RATE_MIN_HZ:
         text = f"{piece.rate_hz:g} samples a second are fewer than {RATE_MIN_HZ:g}"
         return Navigated(known, [], 0.0, text)
@@ -141,7 +160,7 @@ def navigate(before: Navigation | None, piece: Samples, heading_rad: float) -> N
     if off_s < -min(JITTER_MOST_S, 0.5 * piece.count * step_s):
         samples = samples[round(-off_s / step_s) :]
         if not len(samples):
-            return Navigated(known, [], 0.0, "samples of this time were reported before")
+            return Navigated(known, [], 0.0, REPORTED)
         off_s = 0.0
     samples, known, turned = _joined(known, off_s, step_s, samples)
     sifted = sift(known.watch, known.waiting, samples, known.missing, step_s)

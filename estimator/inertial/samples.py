@@ -22,6 +22,7 @@ class Samples(Reading, tag="samples", frozen=True):
         count: how many these are.
         values: specific force and angular rate of each, count × 6 in C order (m/s², rad/s).
         last: it is the last piece of its reading, which counts with it.
+        first_t: when its reading begins, Unix seconds.
     """
 
     t: float
@@ -30,6 +31,7 @@ class Samples(Reading, tag="samples", frozen=True):
     count: int
     values: bytes
     last: bool
+    first_t: float
 
     @property
     def until_t(self) -> float:
@@ -71,4 +73,5 @@ def pieces(reading: Imu) -> Iterator[Samples]:
             count=len(some),
             values=some.tobytes(),
             last=first + each >= count,
+            first_t=reading.t,
         )

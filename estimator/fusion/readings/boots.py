@@ -34,7 +34,7 @@ def displacements_of(state: FusionState, piece: Samples) -> list[Led]:
         state.say(
             "not_fused", piece.t, node.node, f"{node.node}: {done.text}", once=f"{node.node} {done.text}"
         )
-    state.count("fused" if done.text is None or done.displacements else "not_fused", int(piece.last))
+    state.count("fused" if done.taken else "not_fused", int(piece.last))
     return done.displacements
 
 
