@@ -18,6 +18,7 @@ from estimator.inertial.boot import (
     RATE,
     RESTED_S,
     SCALE,
+    TURNED_RAD2,
     VELOCITY,
     Boot,
     Strapdown,
@@ -39,6 +40,8 @@ UNSETTLED = 0.1
 """What is less than this of what a bias is unsure by anyway is nothing."""
 TILT_SIGMA_RAD = (0.02, 0.4)
 """Of a boot that rests while it is levelled, and of one that does not."""
+ANYWHERE_RAD = 1.8
+"""Standard deviation of a heading that may be any."""
 START_SIGMA_MPS = (0.02, 2.0)
 """How fast it may be, or have been while it was levelled: a boot goes a stride in half a second, of 1.3 m
 where its wearer walks and of two and more where he runs."""
@@ -99,12 +102,13 @@ def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
         boot.gyros[BIAS_RADPS] = UNRESTED_RADPS
         boot.gyros[CHANGED] = UNRESTED_RADPS**2 - RESTED_RADPS**2
     held.attitude[:] = level(mean, int(boot.known[AXIS]), boot.known[HEADING] + boot.known[AZIMUTH])
+    unrested = 0 if rests else 1
+    boot.known[TURNED_RAD2] += veered_rad2(held.attitude[2, int(boot.known[AXIS])], TILT_SIGMA_RAD[unrested])
     for axis in range(2):
         if abs(held.attitude[2, axis]) <= abs(held.attitude[2, 1 - axis]):
             boot.known[AXIS] = float(axis)
     axis = int(boot.known[AXIS])
     boot.known[AZIMUTH] = azimuth_rad(held.attitude, axis) - boot.known[HEADING]
-    unrested = 0 if rests else 1
     for c in range(3):
         held.covariance[VELOCITY + c, VELOCITY + c] = START_SIGMA_MPS[unrested] ** 2
     for c in range(2):
@@ -115,6 +119,20 @@ def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
     if rests:
         _weigh(free, mean)
     told[0] = -1.0
+
+
+@njit(cache=True, error_model="numpy")
+def veered_rad2(up: float, tilt_rad: float) -> float:
+    """Variance of what an axis faces, seen from above, by a tilt that is not known: the steeper, the more.
+
+    Turned about what it faces by a small tilt, an axis of elevation e veers by the tilt times tan e.
+
+    Args:
+        up: how much of the axis points up, sin e.
+        tilt_rad: standard deviation of the tilt (rad).
+    """
+    level2 = max(1.0 - up * up, 1e-12)
+    return min(tilt_rad * tilt_rad * up * up / level2, ANYWHERE_RAD**2)
 
 
 @njit(cache=True, error_model="numpy")

@@ -22,7 +22,7 @@ from estimator.inertial.boot import (
     Boot,
 )
 from estimator.inertial.holding import UNHELD_S
-from estimator.inertial.levelling import ALIGN_S
+from estimator.inertial.levelling import ALIGN_S, ANYWHERE_RAD
 from estimator.inertial.loose import tell
 from estimator.inertial.repeating import sift, unwatched
 from estimator.inertial.resting import TOLD_AFTER_S
@@ -52,10 +52,12 @@ FELT_OFF_MPS2 = math.hypot(FORCE_SIGMA_MPS2, SCALE_SIGMA * GRAVITY_MPS2)
 """What its accelerometers may be off by, and no motion."""
 FASTEST_MPS = 25.0
 """A runner's boot swings twice as fast as he runs."""
-TURNS_RADPS, TURNED_RAD, TURNED_RADPS, ANYWHERE_RAD = 3.0, 1.0, 0.1, 1.8
+TURNS_RADPS, TURNED_RAD, TURNED_RADPS = 3.0, 1.0, 0.1
 """While samples are missing their bearer may turn on his heel; then he mostly goes on; in the end he may face
 anything, which is 1.8 rad."""
 
+STEEP_RAD = 0.1
+STEEP = "what its x axis faces can hardly be told when it begins: it points up or down, or the boot moves"
 REPORTED = "samples of this time were reported before"
 BEGUN_MOST = 8
 """Of so many readings at once it is known that a part was new."""
@@ -246,6 +248,8 @@ def _led(
             if boot.levelled and not known_before:
                 # It stood meanwhile, or may have been swung anywhere.
                 found.append(_displacement(boot, node, max(told_t, t - ALIGN_S), t, 0.0))
+                if math.sqrt(boot.known[TURNED_RAD2]) > STEEP_RAD:
+                    text = STEEP
                 boot.gyros[CHANGED] = boot.known[TURNED_RAD2] = 0.0
             told_t = t if boot.levelled else told_t
         elif t >= told_t + EACH_S - 0.5 * step_s:
