@@ -26,6 +26,7 @@ from estimator.smoothing.images.flips import (
     heard_by,
     loose_steps,
 )
+from estimator.smoothing.images.floors import hold_floors
 from estimator.smoothing.images.imaged import Loose, imaged, now_of
 from estimator.smoothing.images.otherwise import Mode, same_now
 from estimator.smoothing.images.parts import Parts
@@ -68,6 +69,9 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
         solved: a solution.
         effort: how much is asked.
     """
+    # Units measure heights: what floors are guessed from is unknown only of those who have none.
+    if any(_compared(problem, solved, i, effort) for i in range(len(problem.layout.walks))):
+        solved = hold_floors(problem, hold_floors(problem, solved))
     problem, solved, before = earlier(problem, solved)
     solved, apart = among(problem, solved, effort.whole)
     again = asked_again(problem)
@@ -78,6 +82,8 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
     told, open_to, changed = list[Mode](), dict[int, bool](), set(group)
     parts: Parts | None = None
     for _ in range(effort.rounds):
+        if problem.rows.floors is not None:
+            solved = hold_floors(problem, solved)
         led = _loose(problem, solved)
         asked = asked_of(problem, solved, led, again, effort)
         most = max(effort.tried * WAYS // max(len(asked), WAYS), LEAST_TRIED)
@@ -104,8 +110,26 @@ def likeliest(problem: Problem, solved: Solved, effort: Effort = LIVE) -> Judged
         if not any(same_now(problem.layout, mode.x, x) for x in (solved.x, *(m.x for m in (*before, *told)))):
             told.append(mode)
     problem.rows.widen(solved.x, solved.linear.jacobian)
+    problem.rows.floors = None
     open_now = new or bool(before) or any(open_to.values())
     return Judged(problem, solved, [*before, *told], open_now, frozenset(open_to))
+
+
+def _compared(problem: Problem, solved: Solved, index: int, effort: Effort) -> bool:
+    """Whether solutions will be compared that put somebody elsewhere who has no unit."""
+    walk = problem.layout.walks[index]
+    if not walk.node.moving or walk.way is not None:
+        return False
+    own = loose_steps(problem, solved, index)
+    return bool(walk.node.otherwise or _flips(problem, solved, index, own, effort))
+
+
+def _flips(
+    problem: Problem, solved: Solved, index: int, own: NDArray[np.bool_], effort: Effort
+) -> list[Flip]:
+    walk, way_m = problem.layout.walks[index], problem.layout.states(solved.x, index)[:, :2]
+    now = float(problem.layout.grid[-1])
+    return flips(heard_by(problem, solved, walk), way_m, walk, own, now, effort)
 
 
 def _is_new(layout: Layout, index: int) -> bool:
@@ -135,7 +159,7 @@ def _judged(
     problem.rows.widen(solved.x, solved.linear.jacobian)
     own, heard = loose[index], heard_by(problem, solved, walk)
     way_m = layout.states(solved.x, index)[:, :2]
-    found = flips(heard, way_m, walk, own, now, effort) if own.any() else []
+    found = _flips(problem, solved, index, own, effort) if own.any() else []
     if walk.node.turned:
         # Each way before has several headings since.
         effort = effort._replace(tried=effort.tried * 3 // 2)

@@ -192,7 +192,7 @@ def apart(readings: Readings, x: Array) -> Array:
 def stretch(
     readings: Readings,
     x: Array,
-    inside: NDArray[np.bool_],
+    through: NDArray[np.bool_],
     strongest: NDArray[np.bool_],
     alike: Array,
     alone: Array,
@@ -203,7 +203,7 @@ def stretch(
     Args:
         readings: of the window.
         x: the estimate, flat.
-        inside: which pairs are ranges or powers inside the building, m.
+        through: which pairs are thought to go through a floor, m.
         strongest: which are the strongest powers of their links for some time, m.
         alike: which number in its row of alike readings each one is, m at least.
         alone: standard deviation that each would have were there none alike, m at least.
@@ -213,7 +213,7 @@ def stretch(
     value, constants = readings.value, readings.constant
     for i in range(len(kinds)):
         e, n, u = way[i, 0], way[i, 1], way[i, 2]
-        if inside[i] and abs(u) > physics.FLOOR_M:
+        if through[i]:
             sigma[i] = through_sigma(sigma[i], kinds[i] != RANGE, alike[i])
         close = strongest[i] and np.sqrt(e * e + n * n + u * u) <= physics.ENCOUNTER_M
         if close and value[i] >= near_dbm(x[extra[i, 0]] + constants[i], x[extra[i, 1]]):

@@ -59,7 +59,10 @@ class Rows:
         pairs: the ledger's rows of the pairs, as they stand in front.
         singles: those of the singles.
         drops: those of the drops.
+        floors: which pairs are held to go through a floor, m; None: those that do at each estimate.
     """
+
+    floors: NDArray[np.bool_] | None = None
 
     def __init__(self, layout: Layout, since_t: float) -> None:
         self._layout, self._nodes = layout, nodes_of(layout)
@@ -173,6 +176,7 @@ class Rows:
         other.columns = np.where(columns >= 0, numbers.column[columns], -1)
         other.pairs, other.singles, other.drops = self.pairs[pairs], self.singles[singles], self.drops[drops]
         vars(other).update(
+            floors=None if self.floors is None else self.floors[pairs],
             _inside=self._inside[pairs],
             _strongest=self._strongest[pairs],
             _unsure_m2=tuple(each[some] for each, some in unsure),
@@ -205,8 +209,8 @@ class Rows:
         """
         m = len(self.pairs)
         self.shift = np.zeros(len(self.nominal))
-        way, off = apart(self._readings, x), residuals(self._readings, x)
-        among = self._inside & (self.pairs[:, 1] == RANGE) & (np.abs(way[:, 2]) <= physics.FLOOR_M)
+        off = residuals(self._readings, x)
+        among = self._inside & (self.pairs[:, 1] == RANGE) & ~self.through(x)
         white, common = self._white.copy(), self._common.copy()
         for source in np.unique(self.source[:m][among]):
             at = np.flatnonzero(among & (self.source[:m] == source))
@@ -246,8 +250,13 @@ class Rows:
             jacobian: of the rows, m × 14, by which the noise of a place becomes one of the reading.
         """
         self.sigma = self._told.copy()
-        stretch(self._readings, x, self._inside, self._strongest, self.alike, self._alone, self.sigma)
+        through = self.through(x) if self.floors is None else self.floors
+        stretch(self._readings, x, through, self._strongest, self.alike, self._alone, self.sigma)
         add_unsure(jacobian, *self._unsure_m2, self.sigma)
+
+    def through(self, x: Array) -> NDArray[np.bool_]:
+        """Which pairs go through a floor at an estimate, flat, m."""
+        return np.asarray(self._inside & (np.abs(apart(self._readings, x)[:, 2]) > physics.FLOOR_M))
 
     def places(self, x: Array) -> tuple[Array, Array]:
         """Where both ends of each pair are at an estimate, m × 3 each (m)."""
