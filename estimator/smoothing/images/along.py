@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from estimator.fusion.images import Image, mirrored
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
-from estimator.smoothing.images.flips import Flip, end_of, nearest
+from estimator.smoothing.images.flips import Flip, end_of
 from estimator.smoothing.images.imaged import Loose, imaged
+from estimator.smoothing.images.nearest import nearest
 from estimator.smoothing.images.parts import Parts
 from estimator.smoothing.images.turns import all_round, facing, reports_from, turns_whole
 from estimator.smoothing.keyframes.layout import Layout

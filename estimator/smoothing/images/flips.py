@@ -16,6 +16,7 @@ from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.motion.silence import SILENT_S
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
+from estimator.smoothing.images.nearest import nearest
 from estimator.smoothing.keyframes.layout import Walk
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
@@ -213,9 +214,28 @@ def flips(
             found += [Flip(k, image) for k in near]
             if effort.whole:
                 found += [Flip(k, image, until) for k, until in pairwise(near)]
+    if effort.whole:
+        found += _between(heard, way_m, walk, loose, effort)
     found = [flip for flip in dict.fromkeys(found) if not _contradicted(heard, flip, loose)]
     jumps_m = [float(np.hypot(*(flip.image.of(way_m[flip.since]) - way_m[flip.since]))) for flip in found]
     return [found[k] for k in np.argsort(np.array(jumps_m), kind="stable")[: effort.flips].tolist()]
+
+
+def _between(heard: Heard, way_m: Array, walk: Walk, loose: NDArray[np.bool_], effort: Effort) -> list[Flip]:
+    """Reflections there and back, in the line through the two radios that tell most for some time.
+
+    Whoever is heard by other radios before and after may still have been on either side meanwhile.
+    """
+    found: list[Flip] = []
+    for stretch in np.unique(heard.t // RECENT_S).tolist():
+        off_s = heard.t - (stretch + 0.5) * RECENT_S
+        about = heard.slab[np.abs(off_s) <= 1.5 * RECENT_S]
+        own = loose.copy()
+        own[: about.min()] = own[about.max() + 1 :] = False
+        for image, off_m in _across(radios_of(heard.some(np.abs(off_s) <= 0.5 * RECENT_S)), way_m):
+            near = nearest(np.abs(off_m), walk, own, effort.nearest, effort.newest)
+            found += [Flip(k, image, until) for k, until in pairwise(near)]
+    return found
 
 
 def end_of(flip: Flip, loose: NDArray[np.bool_]) -> int:
@@ -267,26 +287,8 @@ def _across(radios: list[Array], places_m: Array) -> list[tuple[Image, Array]]:
     """The reflection that leaves ranges to two radios as they are, and how far off its line places are."""
     if len(radios) < RADIOS:
         return []
-    one, other = radios
+    # The same line is the same image, whichever of them tells more.
+    one, other = sorted(radios, key=lambda place_m: tuple(place_m.tolist()))
     towards = float(np.arctan2(other[1] - one[1], other[0] - one[0]))
     off = places_m - one
     return [(mirrored(one, towards), np.cos(towards) * off[:, 1] - np.sin(towards) * off[:, 0])]
-
-
-def nearest(off_m: Array, walk: Walk, loose: NDArray[np.bool_], most: int, newest: int) -> list[int]:
-    """Loose keyframes at which somebody was nearest; the first is one, if nobody knew him before.
-
-    Args:
-        off_m: how far off he was at each keyframe, k (m).
-        walk: his.
-        loose: see `loose_steps`.
-        most: so many of them.
-        newest: and so many of the last.
-    """
-    own = off_m[walk.first : walk.last + 1]
-    at = np.flatnonzero((own[1:-1] <= own[:-2]) & (own[1:-1] < own[2:])) + 1
-    if walk.begins:
-        at = np.concatenate([[0], at])
-    at = at[loose[walk.first + at]]
-    found = at[np.argsort(own[at], kind="stable")[:most]]
-    return sorted({*(walk.first + found).tolist(), *(walk.first + at[-newest:]).tolist()})

@@ -10,7 +10,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.images.flips import LIVE, exposed, flips, heard_by, loose_steps, radios_of
+from estimator.smoothing.images.flips import LIVE, WHOLE, exposed, flips, heard_by, loose_steps, radios_of
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
 from tests.estimator.smoothing.windows import fused, problem_of
@@ -63,6 +63,32 @@ def test_who_crosses_the_line_of_his_radios_may_have_turned_back(
     south = [flip for flip in found if np.hypot(*(flip.image.of(np.array([5.0, 7.0])) - [5.0, -7.0])) < 0.2]
     assert any(abs(problem.layout.grid[flip.since] - CROSSED_S) <= 1.0 for flip in south)
     assert exposed(heard, 40.0)
+
+
+def test_who_was_between_other_radios_before_and_after_may_have_been_beyond_the_line_meanwhile() -> None:
+    """He crosses the line through two, and comes back; before and after he hears three others more often."""
+    chance = np.random.default_rng(2)
+    others = {"b1": (0.0, -30.0), "b2": (20.0, -30.0), "b3": (12.0, -45.0)}
+    readings: list[AnyReading] = [
+        Node(t=0.0, node=name, role="anchor", position_m=(*at, 0.0)) for name, at in (TWO | others).items()
+    ]
+    readings.append(Node(t=0.0, node="ff1", role="responder", position_m=(12.0, -20.0, 0.0), sigma_m=0.2))
+    for second in range(1, 81):
+        at = np.array([12.0, 20.0 - abs(second - 40.0)])
+        within = 20 <= second <= 60
+        for name, place in (TWO if within else others).items() if second % 4 == 0 or not within else ():
+            range_m = float(np.hypot(*(at - place)) + chance.normal(0.0, 0.1))
+            readings.append(Range(t=second, a="ff1", b=name, range_m=range_m, technology="uwb"))
+    problem, solved = solved_of(readings)
+    heard = heard_by(problem, solved, problem.layout.walks[0])
+    way_m, loose = places(problem, solved), loose_steps(problem, solved, 0)
+    found = flips(heard, way_m, problem.layout.walks[0], loose, 80.0, WHOLE)
+    south = [flip for flip in found if np.hypot(*(flip.image.of(np.array([5.0, 7.0])) - [5.0, -7.0])) < 0.2]
+    spans = [(problem.layout.grid[one.since], problem.layout.grid[one.until]) for one in south if one.until]
+    assert any(
+        since == pytest.approx(20.0, abs=2.0) and until == pytest.approx(60.0, abs=2.0)
+        for since, until in spans
+    )
 
 
 def test_two_radios_on_one_mast_are_on_no_line() -> None:
