@@ -5,7 +5,7 @@ others held where they are, which costs little, and the window as a whole only w
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from estimator.smoothing.problem.solved import Solved
 HELD, ALONE = 150.0, 10.0
 """What an image costs more, in log likelihood, that is given up with all others held where they are; and so
 where no reading ties him to any of them."""
+LED = 4
+"""So many times as many images are solved with all others held as are solved as a whole at most."""
 SLACKS_M = (1.0, 0.3, 0.1)
 """How far off an estimate may be at first whose way nobody has gone: with a unit turned, or others along."""
 
@@ -34,28 +36,30 @@ def solutions(asked: Asked, parts: Parts, solved: Solved, begun: Iterable[Begun]
         begun: where each of them begins, with all others where they are in the solution.
         most: so many of them are solved as a whole.
     """
-    found, tried = [Tried(solved, Flip(0, Image()))], list[Begun]()
+    found, tried, led = [Tried(solved, Flip(0, Image()))], list[Begun](), list[Led]()
     tied = _tied(asked)
     for start in begun:
         if any(asked.same_start(start, other) for other in tried):
             continue
         tried.append(start)
-        led = _led(asked, parts, found, start, tied)
-        if led is None:
-            continue
-        if most == 0:
+        there = _led(asked, parts, found[0], start, tied)
+        if there is not None and not any(_same(asked, parts, other, there) for other in led):
+            led.append(there)
+        if len(tried) == LED * most:
             break
-        most -= 1
-        alone = len(start.flip.along) + 1 == len(asked.layout.walks)
+    # What begins far off may lead nearest: what is likeliest with all others held is solved first.
+    led.sort(key=lambda one: one.cost)
+    for start, cost in led[:most]:
         # With nobody held it has led nowhere yet.
-        there = reached(asked.problem, led.x, _slacks(led.flip) if alone else (), found[0].solved)
-        if there is None:
+        slacks = _slacks(start.flip) if cost == math.inf else ()
+        solution = reached(asked.problem, start.x, slacks, found[0].solved)
+        if solution is None:
             continue
-        new = Tried(there, start.flip)
+        new = Tried(solution, start.flip)
         same = asked.among([one.led for one in found], new.led)
         if same is None:
             found.append(new)
-        elif there.cost < found[same].solved.cost - CLEARER:
+        elif solution.cost < found[same].solved.cost - CLEARER:
             found[same] = new._replace(flip=found[same].flip)
     best = min(found, key=lambda one: one.solved.cost)
     if best.solved.cost > found[0].solved.cost - CLEARER:
@@ -63,7 +67,7 @@ def solutions(asked: Asked, parts: Parts, solved: Solved, begun: Iterable[Begun]
     return [best, *(one for one in found if one is not best)]
 
 
-def _led(asked: Asked, parts: Parts, found: Sequence[Tried], start: Begun, tied: bool) -> Begun | None:
+def _led(asked: Asked, parts: Parts, known: Tried, start: Begun, tied: bool) -> Led | None:
     """Where an image leads to with all others held where they are; None: to no solution that is not known.
 
     Two headings part soon, or they are one: first the beginning of a way is asked alone.
@@ -71,7 +75,7 @@ def _led(asked: Asked, parts: Parts, found: Sequence[Tried], start: Begun, tied:
     Args:
         asked: of whom.
         parts: of the window.
-        found: the solutions that are known.
+        known: the solution that is known.
         start: where to begin.
         tied: readings tie him to others who move.
     """
@@ -80,7 +84,7 @@ def _led(asked: Asked, parts: Parts, found: Sequence[Tried], start: Begun, tied:
     led = Led(start, math.inf)
     for until in parts.stages(start.flip):
         if until == last and len(moving) == len(layout.walks):
-            break
+            return led._replace(cost=math.inf)
         part = parts.of(moving, until)
         try:
             x = part.led(led.to.x, slacks, len(slacks) + SOON)
@@ -90,15 +94,22 @@ def _led(asked: Asked, parts: Parts, found: Sequence[Tried], start: Begun, tied:
         led = Led(start._replace(x=x), part.more(x))
         if led.cost > (HELD if tied else ALONE):
             return None
-        known = [Led(one.begun, part.more(one.solved.x)) for one in found]
-        same = asked._replace(part=part).among(known, led)
-        if same is None:
+        home = Led(known.begun, part.more(known.solved.x))
+        if not asked._replace(part=part).same(home, led):
             continue
         # A beginning that is the same goes on the same way: what it gains by itself is no gain.
-        clearer = until == last and led.cost < known[same].cost - CLEARER
-        if not clearer and (until == last or asked.returned(known[same].to, start, led.to)):
+        clearer = until == last and led.cost < home.cost - CLEARER
+        if not clearer and (until == last or asked.returned(home.to, start, led.to)):
             return None
-    return led.to
+    return led
+
+
+def _same(asked: Asked, parts: Parts, one: Led, other: Led) -> bool:
+    """Whether two images have led to the same, with all others held."""
+    if math.inf in (one.cost, other.cost):
+        return False
+    moving = {asked.of, *(i for i, _ in other.to.flip.along)}
+    return asked._replace(part=parts.of(moving, asked.layout.length - 1)).same(one, other)
 
 
 def _tied(asked: Asked) -> bool:

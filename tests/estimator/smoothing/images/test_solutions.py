@@ -6,13 +6,17 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from estimator.fusion.images import Image
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.measurements.rssi import Rssi
 from estimator.smoothing.images import solutions
+from estimator.smoothing.images.flips import Flip
 from estimator.smoothing.images.likeliest import Judged, likeliest
+from estimator.smoothing.images.parts import Parts
 from estimator.smoothing.images.reached import is_law, reached
+from estimator.smoothing.images.tried import Asked, Begun, Led, Tried
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
 from tests.estimator.smoothing.images.test_among import DBM, EXPONENT, SECONDS, SIGMA_DB, stroll
@@ -85,3 +89,25 @@ def test_a_law_that_is_nearly_flat_leads_nobody_on_top_of_strong_radios(seed: in
     judged = likeliest(*solved_of(side_by_side(seed)))
     assert is_law(judged.problem.layout, judged.solved.x)
     assert max(off_m(judged, seed)) < 4.0
+
+
+def test_what_leads_nearest_is_solved_first_however_far_off_it_began(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two images of a way, of which one may be solved as a whole; the second leads to what costs less."""
+    problem, solved = solved_of(two(0))
+    starts = []
+    for k, east_m in enumerate((40.0, -40.0)):
+        x = solved.x.copy()
+        problem.layout.states(x, 0)[:, 0] += east_m
+        starts.append(Begun(x, Flip(5 * k, Image())))
+    asked, tried = Asked(problem, 0, whole=False), list[float]()
+
+    def led(_: Asked, __: Parts, ___: Tried, start: Begun, ____: bool) -> Led:
+        return Led(start, 8.0 - start.flip.since)
+
+    def noted(_: Problem, x: Array, *__: object) -> None:
+        tried.append(float((x - solved.x)[0]))
+
+    monkeypatch.setattr(solutions, "_led", led)
+    monkeypatch.setattr(solutions, "reached", noted)
+    solutions.solutions(asked, Parts(problem, solved.x), solved, starts, 1)
+    assert tried == [pytest.approx(-40.0)]
