@@ -52,7 +52,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     retired: list[Retire] = []
     returned: list[Node] = []
     for reading in readings:
-        if state.called and not isinstance(reading, (Node, Retire)):
+        if state.called and isinstance(reading, (*HELD, Displacement, Samples)):
             for name in names_of(reading):
                 again.come_back(state, name, reading.t)
         if isinstance(reading, HELD):
@@ -293,7 +293,7 @@ def _drop(state: FusionState, reading: Drop) -> bool:
     crumb = state.nodes.get(reading.node)
     if crumb is not None and crumb.mode == "retired" and crumb.role not in (*MOVING_ROLES, "base"):
         # It was picked up, and is dropped again.
-        again.begin_anew(state, crumb, reading.t)
+        again.begin_anew(state, crumb, crumb.role, reading.t)
     done = introduce.drop(state, reading.node, by, where, reading.t)
     state.count("fused" if done else "not_fused")
     return done

@@ -56,7 +56,7 @@ TURNS_RADPS, TURNED_RAD, TURNED_RADPS = 3.0, 1.0, 0.1
 """While samples are missing their bearer may turn on his heel; then he mostly goes on; in the end he may face
 anything, which is 1.8 rad."""
 
-STEEP_RAD = 0.1
+STEEP_RAD = 0.1  # as much as a heading is unsure by that is told without a sigma
 STEEP = "what its x axis faces can hardly be told when it begins: it points up or down, or the boot moves"
 REPORTED = "samples of this time were reported before"
 BEGUN_MOST = 8

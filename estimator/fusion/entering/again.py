@@ -7,7 +7,7 @@ put right after somebody has left: only who is introduced and then reported of h
 from estimator.fusion.entering import introduce
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.measurements.node import MOVING_ROLES, Node
+from estimator.measurements.node import MOVING_ROLES, Node, Role
 
 
 def call(state: FusionState, reading: Node) -> None:
@@ -37,21 +37,19 @@ def come_back(state: FusionState, name: str, t: float) -> None:
     reading = state.called.get(name)
     if reading is None or t < reading.t:
         return
-    begin_anew(state, state.nodes[name], reading.t)
+    begin_anew(state, state.nodes[name], reading.role, reading.t)
     introduce.introduce(state, reading)
     state.say("came_back", t, name, f"{name} has come back: introduced again and reported of")
 
 
-def begin_anew(state: FusionState, known: NodeState, t: float) -> NodeState:
+def begin_anew(state: FusionState, known: NodeState, role: Role, t: float) -> None:
     """End a retired node's life for good, and begin another one with a number of its own.
 
     Args:
         state: the fusion, changed in place.
-        known: the retired node.
+        known: the retired node; it is undecided afterwards.
+        role: what it comes back as.
         t: since when it is back (s).
-
-    Returns:
-        The node, undecided.
     """
     name = known.node
     state.ended[known.index] = known
@@ -59,6 +57,4 @@ def begin_anew(state: FusionState, known: NodeState, t: float) -> NodeState:
         kept.pop(name, None)
     # Where it was is nowhere near: what radios heard of it then tells of no reach.
     state.listeners = {a: listener.without(name) for a, listener in state.listeners.items()}
-    node = NodeState(node=name, role=known.role, named=known.named, t=t, index=state.number(name))
-    state.nodes[name] = node
-    return node
+    state.nodes[name] = NodeState(node=name, role=role, named=known.named, t=t, index=state.number(name))

@@ -13,6 +13,7 @@ from estimator.measurements.node import Node
 from estimator.measurements.position import Position
 from estimator.measurements.range import Range
 from estimator.measurements.retire import Retire
+from estimator.measurements.status import Status
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from estimator.trackers.paper_a import PaperATracker
@@ -66,6 +67,21 @@ def test_a_list_that_a_gateway_repeats_brings_nobody_back() -> None:
     assert shown(tracker) == left
     assert left.retired
     assert tracker.take_notices() == []
+
+
+def test_a_radio_beside_the_engine_that_reports_its_battery_brings_nobody_back() -> None:
+    tracker = KirchhoffTracker()
+    tracker.fold([*(r for r in out_and_in() if r.t <= OUT_S), AGAIN, Status(t=91.0, node="ff1", battery=0.5)])
+    assert shown(tracker).retired
+
+
+def test_a_name_may_come_back_as_something_else() -> None:
+    entered = Node(t=100.0, node="b1", role="responder", position_m=(5.0, 5.0, 0.0), sigma_m=0.3)
+    fix = Position(t=101.0, node="b1", position_m=(5.0, 5.0, 0.0), sigma_m=(1.0, 1.0, 1.0))
+    tracker = KirchhoffTracker()
+    tracker.fold([*out_and_in(), Drop(t=5.0, node="b1", by="ff1"), Retire(t=20.0, node="b1"), entered, fix])
+    assert shown(tracker, "b1").role == "responder"
+    assert off_m(shown(tracker, "b1"), (5.0, 5.0)) < 1.0
 
 
 def test_who_was_reported_of_before_he_was_introduced_again_has_not_come_back() -> None:
