@@ -42,6 +42,7 @@ NoticeCode = Literal[
     "too_late",
     "node_moved",
     "came_back",
+    "unit_changed",
     "link_changed",
     "outlier",
     "conflict",

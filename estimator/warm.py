@@ -5,20 +5,22 @@ import numpy as np
 from estimator.fusion.entering.modes import Sought, costs_of, find_modes
 from estimator.fusion.learned.gyros import prior_sigma_radps
 from estimator.fusion.learned.links import NEW
+from estimator.fusion.learned.rival import TOLD, drawn, follow, upper_of
 from estimator.fusion.memory.ledger import COLUMNS
 from estimator.fusion.motion.free import free_motion
 from estimator.fusion.motion.silence import unheard_m2
 from estimator.fusion.motion.swings import swung_m2
-from estimator.fusion.motion.units import walked
+from estimator.fusion.motion.units import walk
 from estimator.fusion.motion.way import End, offset
+from estimator.fusion.readings.crossings import crossings_in
 from estimator.fusion.readings.echoes import tell as tell_echoes
 from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.report import shown
-from estimator.fusion.rows.descent import descend
+from estimator.fusion.rows.foretold import foretell
 from estimator.fusion.rows.rows import FIELDS, ONE
-from estimator.fusion.update import odd, tally
+from estimator.fusion.update import take_in
 from estimator.graph.dense import factorise, inverse
-from estimator.graph.kernels import eliminate, selected_inverse, strongest, substitute, take_off
+from estimator.graph.kernels import eliminate, selected_inverse, substitute, take_off
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
 from estimator.graph.scatter import add_motion, add_part, couple, localise, scatter_rows
@@ -26,20 +28,21 @@ from estimator.graph.triangular import inverted
 from estimator.graph.variable import Variable
 from estimator.inertial.advancing import advance
 from estimator.inertial.boot import Boot
+from estimator.inertial.clock import Clock, hears
 from estimator.inertial.loose import tell
 from estimator.inertial.repeating import sift, unwatched
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
+from estimator.smoothing.changes.descended import Ranged, descended
 from estimator.smoothing.changes.moved import ask
-from estimator.smoothing.keyframes.ends import Nodes, Table, place_ends, stand
+from estimator.smoothing.keyframes.ends import Ground, Nodes, Table, place_ends
 from estimator.smoothing.keyframes.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
-from estimator.smoothing.keyframes.ways import Laid, Way
+from estimator.smoothing.keyframes.ways import Way, ways_of
 from estimator.smoothing.learning.learn import noise_scores
 from estimator.smoothing.learning.slips import gains, unsure
 from estimator.smoothing.problem.turned import change_pairs, moved_from, turn_between, turning
-from estimator.smoothing.readings.arranged import arrange, scattered, sigmas
-from estimator.smoothing.readings.chosen import choose
+from estimator.smoothing.readings.arranged import scattered, sigmas
 from estimator.smoothing.readings.curvature import add_bends
 from estimator.smoothing.readings.linear import (
     ANY,
@@ -51,6 +54,7 @@ from estimator.smoothing.readings.linear import (
     stretch,
 )
 from estimator.smoothing.readings.obstructed import excess
+from estimator.smoothing.readings.placed import Told, placed
 from estimator.smoothing.readings.rarer import once_a_second
 
 
@@ -68,6 +72,7 @@ def warm_up() -> None:
     taken = advance(boot, rests, np.zeros((60, 3)), 0.01)
     advance(boot, rests[taken:], np.zeros((60, 3))[taken:], 0.01)
     tell(boot, 0.5)
+    hears(Clock.new(100.0)._replace(counted=1), 1.0, 100.0, overlaps=False)
     sift(unwatched(), np.zeros((0, 6)), np.zeros((2, 6)), 0, 0.01)
     predict_bearing(place, place, one)
     wrap(one)
@@ -107,28 +112,30 @@ def _warm_chain() -> None:
     substitute(diagonal, link, wide, rest, np.zeros((k, n)))
     add_part(slab, corner, rest, corner, rest)
     selected_inverse(diagonal, link, wide, corner, np.zeros((k, 1, n, n)), np.zeros((k - 1, 1, n, n)))
-    strongest(one, one, one, 1.0, 1)
     place = np.zeros((1, 3))
     end = Table(slab, np.zeros((1, STATES), dtype=np.int64), place, place, place, one)
     place_ends(end, x)
-    nodes = Nodes(slab, slab, slab, place)
     pair, no = np.zeros((1, 2), dtype=np.int64), np.zeros(1, dtype=np.bool_)
-    stood = stand(nodes, slab, one, no, rest, place, pair)
-    heard, read = (np.zeros((1, len(COLUMNS[name]))) for name in ("pairs", "singles"))
-    choose(heard, stood, stood, pair, no)
     way = Way(0.0, between, (1.0, 1.0))
     way.between(one, one)
-    way.lay_out(0, slab, one, one, Laid(place, place, place))
-    readings = Readings(slab, one, one, pair, end, end, slab, one, end, end, end)
+    ground = Ground(
+        Nodes(slab, slab, slab, place), np.arange(2.0), np.zeros((2, 1)), pair, ways_of([0], [way])
+    )
+    heard, read, laid = (np.zeros((1, len(COLUMNS[name]))) for name in ("pairs", "singles", "drops"))
+    found = placed(Told(heard, read, laid), 0.0, ground, pair, no, slab)
+    rows = found.rows
+    readings = Readings(slab, one, one, pair, end, end, slab, one, slab, end, end, end, slab)
     residuals(readings, x)
     add_unsure(jacobians(readings, x), place, place, place, place, np.ones(5))
     apart(readings, x)
-    stretch(readings, x, no, no, one, one, one)
+    stretch(readings, x, no, True, no, one, one, one)
     excess(slab, one, one)
     once_a_second(one, slab, one)
     costs_of(one, one, place, no, one)
     ask(slab, heard, 0, 0, one, one, 0.0)
-    rows = arrange(heard, read, place, slab, pair, *(stood,) * 5)
+    descended(
+        Ranged(place[:, :2].copy(), one, one, one, place), place[:, :2].copy(), True, np.zeros(3), np.eye(3)
+    )
     scattered(place, rows, slab, no)
     sigmas(rows.nominal, rows.nominal, rows)
     turned_by = turn_between(place[:, :2], place[:, :2])
@@ -148,20 +155,25 @@ def _warm_filter() -> None:
     shown(np.zeros(1, dtype=np.intp), graph.reference, inverse(factorise(graph.information)))
     inverted(graph.storage()[0], np.eye(3))
     swung_m2(np.zeros((1, 2, 1)), np.ones(1))
-    walked(np.zeros((1, 12)), graph.reference)
     unheard_m2(1.0, 0.0)
     free_motion("responder", 1.0)
     prior_sigma_radps(0.0, 0.0, np.ones((1, 2)))
     table = np.full((1, FIELDS), 0.5)
     table[0, :2] = ONE, 0.0
-    found = descend(table, graph.information.copy(), graph.vector, graph.reference, 1)
     newest = np.array([NEW])
-    tally(table, found, newest, np.zeros((1, 6)))
-    odd(table, found.good, newest, False)
+    none = np.zeros(0, dtype=np.intp)
+    take_in(table, *graph.storage(), graph.size, none, newest, np.empty((1, 3)), np.zeros((1, 6)), 1)
+    crossings_in(table, 0)
+    graph.add_node(Variable("unit", ""), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    step = np.array([[0.0, 3.0, *(1.0,) * 10]])
+    walk(step, *graph.storage(), graph.size, np.empty(6, dtype=np.intp), np.empty((6, 6)))
     ends, marks = np.zeros((1, len(End._fields))), np.zeros((2, 4))
     offset(ends[0], marks, graph.reference, 0.0)
     technology = np.zeros((1, len(Technology._fields)))
     pair_rows(np.zeros((1, PAIR)), technology, ends, marks, newest, graph.reference)
+    foretell(table, np.zeros(1), none, graph.information, graph.reference)
+    follow(np.zeros(4), upper_of(np.eye(4)), 0.0, np.ones((1, TOLD)), np.zeros(1))
+    drawn(np.zeros(4), np.eye(4), 0.0, np.zeros(2), np.eye(2), 0.5)
 
 
 if __name__ == "__main__":

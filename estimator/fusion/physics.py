@@ -98,6 +98,13 @@ ABSOLUTE_SHARED = 0.5
 FIX_MEMORY_S, FIX_MEMORY_M, HEIGHT_MEMORY_S = 60.0, 10.0, 30.0
 """Half of the variance of a fix or a height stays for so long, or for so much of a way: satellites' paths
 around a house while one stands at its door; draught and weather, by which an altimeter is off."""
+HEIGHTS_OFF, HEIGHT_OFF_M = 0.2, 4.0
+"""How many altimeters were not zeroed where their bearers set out, and what they are then off by: sensors are
+good to half a hectopascal (data sheet of BMP390), and weather changes pressure by that in half an hour."""
+HEIGHT_ZERO_M = 0.2
+"""What one that was zeroed is off by: sensors repeat themselves to 3 Pa (data sheet of BMP390)."""
+HEIGHT_WALK_M_PER_ROOT_S = 0.015
+"""Weather, warmth and doors let what it is off by walk: by 0.6 m in ten minutes, 1.5 m in an hour."""
 PRESSURE_SIGMA_M = 1.0
 PRESSURE_CORRELATION_S = 30.0
 """Draught and doors move pressure for about so long: readings within it share their error."""
@@ -116,6 +123,9 @@ UNCALIBRATED = 0.3
 """How many technologies have a scale of the wide kind."""
 RANGE_BIAS_SIGMA_M: dict[str, float] = {"uwb": 0.15, "ultrasound": 0.05, "rtt": 1.5}
 RANGE_BIAS_OTHER_SIGMA_M = 0.5
+DELAYED, DELAY_SIGMA_M = 0.02, 2.0
+"""How many radios have an antenna delay that nobody has calibrated, and what it adds to their ranges: 10 ns
+there and back are 1.5 m; offsets of Wi-Fi RTT chips differ by some metres."""
 RANGE_NOISE = Mixture(outliers=0.1, shift=1.5, spread=3.0)
 """Obstructed ranges are too long: M, Wi-Fi RTT's 95th percentile is at 4 to 6 m."""
 

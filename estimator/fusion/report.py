@@ -4,8 +4,9 @@ import numpy as np
 from numba import njit
 
 from estimator.estimate import NodeEstimate, Relative
+from estimator.fusion.entering.apart import apart_m2, elsewhere_m2
 from estimator.fusion.entering.introduce import tuple_of, upper_triangle
-from estimator.fusion.images import doubt_between_m2, doubt_m2
+from estimator.fusion.images import doubt_between_m2
 from estimator.fusion.learned.calibration import doubt
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -89,10 +90,10 @@ def _estimate(
             retired=node.mode == "retired",
         )
     east, north, up, ee, en, eu, nn, nu, uu = place
-    if node.otherwise:
-        doubt = doubt_m2(node.otherwise, np.array([east, north]))
+    if node.otherwise or node.rival is not None or node.apart is not None:
+        doubt = elsewhere_m2(node, np.array([east, north]))
         ee, en, nn = ee + float(doubt[0, 0]), en + float(doubt[0, 1]), nn + float(doubt[1, 1])
-    uu += node.doubt_up_m2
+    uu = max(uu, node.doubt_up_m2)
     heading, sigma = _heading(state, node, covariance) if node.moving else (None, None)
     return NodeEstimate(
         node=node.node,
@@ -149,7 +150,10 @@ def relative(state: FusionState, covariance: Array, a: str, b: str) -> Relative 
     total += across @ selector.T
     loose = loose_headings(state, covariance)
     total += swung_m2(across[None, :, loose], covariance[loose, loose])[0]
-    total[2, 2] += sum(node.doubt_up_m2 for node in ends)
+    total[2, 2] = max(total[2, 2], sum(node.doubt_up_m2 for node in ends))
     held = [node.otherwise if node.place_m is None else () for node in ends]
     total += doubt_between_m2(held[0], places[0][:2], held[1], places[1][:2])
+    for node, place_m in zip(ends, places, strict=True):
+        if node.place_m is None:
+            total += apart_m2(node, place_m[:2])
     return Relative(delta_m=tuple_of(places[1] - places[0]), covariance_m2=upper_triangle(total))

@@ -8,15 +8,18 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.entering import again, beginnings, introduce, leaving, retold
+from estimator.fusion.entering import again, apart, beginnings, changed, introduce, leaving, retold
 from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.state import AnyHeld, FusionState
+from estimator.fusion.motion.doubted import compare
 from estimator.fusion.motion.free import move_free
 from estimator.fusion.motion.units import drift_units, was_silent
 from estimator.fusion.motion.way import offset_of
 from estimator.fusion.readings import boots, held
+from estimator.fusion.readings.clocks import retimed
 from estimator.fusion.readings.crossings import hear
 from estimator.fusion.readings.displacements import move_units, returns
+from estimator.fusion.readings.jumps import another as another_altimeter
 from estimator.fusion.readings.pairs import AnyPair, Pairs
 from estimator.fusion.readings.same_epoch import joined
 from estimator.fusion.rows.rows import Single, table_of
@@ -45,7 +48,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         until_t: end of the tick, Unix seconds.
         readings: in canonical order (see `order`).
     """
-    state.notices = []
+    state.notices, state.announced = [], {}
     state.newest_t = max(state.newest_t, until_t)
     displacements: list[Displacement] = []
     holds: list[AnyHeld] = list(state.waiting)
@@ -56,7 +59,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
             for name in names_of(reading):
                 again.come_back(state, name, reading.t)
         if isinstance(reading, HELD):
-            holds.append(reading)
+            holds.append(retimed(reading, state.clocks, state.nodes) if state.clocks else reading)
         elif isinstance(reading, Displacement):
             displacements.append(reading)
         elif isinstance(reading, Node) and any(r.node == reading.node and r.t < reading.t for r in retired):
@@ -68,9 +71,16 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         elif isinstance(reading, Samples):
             displacements += boots.displacements_of(state, reading)
     holds += hear(state, [r for r in readings if isinstance(r, Rssi)])
-    displacements = joined(state, displacements)
+    displacements = apart.set_aside(state, joined(state, displacements))
     holds.sort(key=attrgetter("t"))
     late_t, gone_out = until_t - physics.PENDING_S, {r.node for r in retired}
+    for name, changed_t in state.announced.items():
+        # What the old unit has told of leads up to where the new one is put on.
+        early = [r for r in displacements if r.node == name and r.t <= changed_t]
+        displacements = [r for r in displacements if r.node != name or r.t > changed_t]
+        _fold(state, early, [], late_t, {name})
+        changed.change(state, name)
+        another_altimeter(state, name, changed_t)
     while back := returns(state, displacements):
         # What was heard of who was silent is not held against where his unit has taken him since.
         name, back_t = min(back.items(), key=itemgetter(1))
@@ -85,7 +95,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         leaving.retire(state, gone)
     for reading in returned:
         retold.take(state, reading)
-    keep_poses(state)
+    state.keep_poses()
 
 
 def _fold(
@@ -163,19 +173,8 @@ def _told_until(state: FusionState) -> dict[str, float]:
     return {n.node: n.pose_t + SAME_EPOCH_S for n in state.nodes.values() if n.mode == "unit"}
 
 
-def keep_poses(state: FusionState) -> None:
-    """Take down where everyone who moves is now: the next solution of the window starts from there."""
-    reference, starts = state.graph.reference.tolist(), state.graph.starts
-    for node in state.nodes.values():
-        if node.moving:
-            unit = node.mode == "unit"
-            here, rest = starts[node.position], starts[node.unit if unit else node.velocity]
-            values = (*reference[here : here + 3], *reference[rest : rest + 3])
-            state.ledger.add("poses", node.pose_t, node.index, float(unit), *values)
-
-
 def flush(state: FusionState) -> None:
-    """Hold what waits for a displacement against the newest positions: for a picture, on a copy."""
+    """Hold what waits for a displacement against the newest positions."""
     waiting, state.waiting = state.waiting, ()
     for part in _parts(state, waiting):
         if part:
@@ -213,7 +212,9 @@ def _hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single]
             told[reading.node] = told[reading.by] = reading.t
     pairs.take(between)
     rows = pairs.enter()
-    update(state, table_of(state.graph.starts, singles, rows))
+    table = table_of(state.graph.starts, singles, rows)
+    compare(state, table, np.concatenate([np.zeros(len(table) - len(rows)), pairs.epochs]))
+    update(state, table)
     beginnings.decide(state)
     for name, heard_t in until.items():
         node = state.nodes.get(name)
@@ -282,8 +283,8 @@ def _drop(state: FusionState, reading: Drop) -> bool:
     if by.mode == "undecided" and by.role in MOVING_ROLES and not waits:
         introduce.begin_at_base(state, by, reading.t)
         by = state.nodes[reading.by]
-    if not by.decided:
-        text = f"{reading.by} has no position: {reading.node} cannot be dropped by it"
+    if not by.decided or by.apart is not None:
+        text = f"nobody knows where {reading.by} is: {reading.node} cannot be dropped by it"
         state.say("conflict", reading.t, reading.node, text)
         state.count("not_fused")
         return False

@@ -12,10 +12,9 @@ from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.readings import echoes
 from estimator.fusion.readings.crossings import learn_reach
-from estimator.fusion.rows.descent import INDEFINITE, SOLVED, Found, descend
+from estimator.fusion.rows.descent import GOOD, INDEFINITE, PREDICTED, RESIDUAL, SOLVED, Found, descend
 from estimator.fusion.rows.rows import CONSTANT, EXTRA, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
-from estimator.graph.dense import Array
-from estimator.graph.kirchhoff import Kirchhoff
+from estimator.graph.dense import Array, Indices
 
 LEVER_M = 20.0
 """A heading's error at the far end of a room's way."""
@@ -30,45 +29,86 @@ def update(state: FusionState, table: Array) -> None:
             solvable system are left out.
         table: the readings, see `rows.table_of`.
     """
-    graph = state.graph
     if len(table) == 0:
         return
-    found = _descend(graph, table)
-    if found.outcome == INDEFINITE:
-        graph.mend()
-        found = _descend(graph, table)
-    if found.outcome != SOLVED:
+    told, sums = np.empty((len(table), 3)), np.zeros((len(state.sources), 6))
+    outcome, turned_rad, again, outliers = _take_in(state, table, told, sums)
+    if outcome == INDEFINITE:
+        state.graph.mend()
+        outcome, turned_rad, again, outliers = _take_in(state, table, told, sums)
+    if outcome != SOLVED:
         return
-    state.bent_m += bend_m(graph, found.x - graph.reference)
-    graph.settle(found.matrix, found.x)
+    state.bent_m += LEVER_M * turned_rad
     # Who passes a kicked breadcrumb is held back by it, or hears it too far off again and again: its window
     # is not to wait.
-    if odd(table, found.good, state.links.table, found.doubted):
+    if again:
         state.suspected = True
-    hear_ranges(state, table, found.good)
-    _learn(state, table, found)
-
-
-def _descend(graph: Kirchhoff, table: Array) -> Found:
-    information, vector, reference = graph.information.copy(), graph.vector, graph.reference
-    return descend(table, information, vector, reference, ITERATIONS)
-
-
-def bend_m(graph: Kirchhoff, moved: Array) -> float:
-    """How far an update has bent what is linearised: the largest turn of a unit, at arm's length (m)."""
-    turns = [moved.item(row) for (kind, _, _), row in graph.starts.items() if kind == "unit"]
-    return LEVER_M * max(map(abs, turns), default=0.0)
-
-
-def _learn(state: FusionState, table: Array, found: Found) -> None:
-    """M-step for the noise of each technology: what good readings are off, and how unsure that is itself."""
-    learn_reach(state, table, found)
-    sums = np.zeros((len(state.sources), 6))
-    outliers = tally(table, found, state.links.table, sums)
+    hear_ranges(state, table, told[:, GOOD])
     state.count("outlier", outliers)
-    for source, told in zip(state.sources, sums.tolist(), strict=True):
-        if told[4] > 0.0 and source != REACH:
-            state.noise[source] = state.learned(source).with_errors(*told, t=state.newest_t)
+    _learn(state, table, told, sums)
+
+
+def _take_in(state: FusionState, table: Array, told: Array, sums: Array) -> tuple[int, float, bool, int]:
+    graph = state.graph
+    headings, newest = graph.firsts("unit"), state.links.table
+    return take_in(table, *graph.storage(), graph.size, headings, newest, told, sums, ITERATIONS)
+
+
+def _learn(state: FusionState, table: Array, told: Array, sums: Array) -> None:
+    """M-step for the noise of each technology: what good readings are off, and how unsure that is itself."""
+    learn_reach(state, table, told)
+    for source, more in zip(state.sources, sums.tolist(), strict=True):
+        if more[4] > 0.0 and source != REACH:
+            state.noise[source] = state.learned(source).with_errors(*more, t=state.newest_t)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def take_in(
+    table: Array,
+    matrix: Array,
+    vector: Array,
+    reference: Array,
+    n: int,
+    headings: Indices,
+    links: Array,
+    told: Array,
+    sums: Array,
+    iterations: int,
+) -> tuple[int, float, bool, int]:
+    """Add readings to a Kirchhoff state and let it rest at the new estimate; sum up what they tell of noise.
+
+    Args:
+        table: of m readings.
+        matrix: L, n × n or larger, changed.
+        vector: b, as long, changed.
+        reference: x, as long, changed.
+        n: rows in use.
+        headings: rows of the units' headings.
+        links: the newest reading on each link, see `tally`; changed.
+        told: takes what each reading was off by, the variance of its prediction and the probability that it
+            is good, m × 3: `RESIDUAL`, `PREDICTED`, `GOOD`.
+        sums: see `tally`.
+        iterations: how often to relinearise at most.
+
+    Returns:
+        The outcome, see `descent.Found`: unless it is `SOLVED` nothing has been changed; the largest turn of
+        a unit (rad); see `odd`; the number of outliers.
+    """
+    found = descend(table, matrix[:n, :n].copy(), vector[:n], reference[:n], iterations)
+    if found.outcome != SOLVED:
+        return found.outcome, 0.0, False, 0
+    turned_rad = 0.0
+    for row in headings:
+        turned_rad = max(turned_rad, abs(found.x[row] - reference[row]))
+    for r in range(n):
+        vector[r], reference[r] = 0.0, found.x[r]
+        for c in range(n):
+            matrix[r, c] = found.matrix[r, c]
+    for r in range(len(table)):
+        told[r, RESIDUAL], told[r, PREDICTED] = found.residual[r], found.predicted[r]
+        told[r, GOOD] = found.good[r]
+    again = odd(table, found.good, links, found.doubted)
+    return found.outcome, turned_rad, again, tally(table, found, links, sums)
 
 
 @njit(cache=True, error_model="numpy")

@@ -55,7 +55,7 @@ def factorise(matrix: Array) -> Cholesky:
             raise ValueError("the information matrix is not positive definite")
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def scale_diagonal(matrix: Array, jitter: float, scaled: Array, scale: Array) -> bool:
     """Scale a matrix so that its diagonal is 1, and raise that by `jitter`.
 
@@ -120,7 +120,7 @@ def inverse(cholesky: Cholesky) -> Array:
     return unscaled(lower.T, cholesky.scale)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def unscaled(upper: Array, scale: Array) -> Array:
     """Both triangles of D⁻¹ A D⁻¹ for the upper one of A (n × n) and the diagonal of D (n)."""
     n, unscale = len(scale), 1.0 / scale

@@ -34,7 +34,7 @@ def scatter(
                     matrix[row, columns[r, j]] += pulled * jacobian[r, j]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", nogil=True)
 def advance(
     matrix: Array, vector: Array, n: int, rows: Indices, transition: Array, noise: Array
 ) -> tuple[bool, Array]:

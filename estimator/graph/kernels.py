@@ -201,6 +201,34 @@ def substitute(diagonal: Array, link: Array, wide: Array, fixed: Array, steps: A
 
 
 @njit(cache=True)
+def carry(diagonal: Array, link: Array, wide: Array, y: Array, rest: Array) -> None:
+    """Right sides to the end after `eliminate`: `y` of keyframes, k × n × c; `rest`, of the border, s × c."""
+    length, width, count = y.shape
+    size, back = link.shape[2], np.empty((width, count))
+    for j in range(length):
+        for r in range(width - 1, -1, -1):
+            y[j, r] *= diagonal[j, r, r]
+            for c in range(r):
+                for i in range(count):
+                    y[j, r, i] += diagonal[j, r, c] * y[j, c, i]
+            for s in range(len(rest)):
+                for i in range(count):
+                    rest[s, i] -= wide[j, r, s] * y[j, r, i]
+        if j == length - 1:
+            break
+        back[:] = 0.0
+        for r in range(width):
+            for c in range(r + 1):
+                for i in range(count):
+                    back[c, i] += diagonal[j, r, c] * y[j, r, i]
+        for r in range(width):
+            block = r // size
+            for c in range(size):
+                for i in range(count):
+                    y[j + 1, r, i] -= link[j, block, r - block * size, c] * back[block * size + c, i]
+
+
+@njit(cache=True)
 def selected_inverse(
     diagonal: Array, link: Array, wide: Array, border_covariance: Array, found: Array, ahead: Array
 ) -> None:
@@ -268,29 +296,3 @@ def add(more: Array, total: Array) -> None:
     for r in range(len(total)):
         for c in range(total.shape[1]):
             total[r, c] += more[r, c]
-
-
-@njit(cache=True)
-def strongest(t: Array, group: Array, value: Array, span: float, least: int) -> Array:
-    """Which values are the largest of their group within `span` before and after, m (1 or 0).
-
-    Args:
-        t: ascending within each group, m.
-        group: groups one after the other, m.
-        value: m.
-        span: in the unit of `t`.
-        least: there must be so many values within the span.
-    """
-    count = len(t)
-    found = np.zeros(count)
-    for i in range(count):
-        best, near = True, 1
-        for step in (-1, 1):
-            j = i + step
-            while 0 <= j < count and group[j] == group[i] and abs(t[j] - t[i]) <= span:
-                near += 1
-                if value[j] > value[i]:
-                    best = False
-                j += step
-        found[i] = 1.0 if best and near >= least else 0.0
-    return found

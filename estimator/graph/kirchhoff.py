@@ -13,7 +13,7 @@ import numpy as np
 from estimator.graph.dense import Array, Cholesky, Indices, factorise, inverse, mended, solve
 from estimator.graph.filter_kernels import advance, loosen, scatter
 from estimator.graph.triangular import inverted
-from estimator.graph.variable import DIMENSION, Variable
+from estimator.graph.variable import DIMENSION, Variable, VariableKind
 
 SMALL = 64
 """Up to so many rows plain loops invert L sooner than LAPACK has been called for each part of it."""
@@ -30,6 +30,7 @@ class Kirchhoff:
     def __init__(self, capacity: int = 32) -> None:
         self.starts: dict[Variable, int] = {}
         self.size = 0
+        self._firsts: dict[VariableKind, Indices] = {}
         self._matrix: Array = np.zeros((capacity, capacity))
         self._vector: Array = np.zeros(capacity)
         self._reference: Array = np.zeros(capacity)
@@ -85,10 +86,18 @@ class Kirchhoff:
         """The reference of one block: its estimate, once `solve` and `rebase` have been called."""
         return self._reference[self.rows(variable)]
 
+    def firsts(self, kind: VariableKind) -> Indices:
+        """First row of each block of a kind, in the order of the rows; not to be changed."""
+        found = self._firsts.get(kind)
+        if found is None:
+            rows = [row for variable, row in self.starts.items() if variable.kind == kind]
+            found = self._firsts[kind] = np.array(rows, dtype=np.intp)
+        return found
+
     def copy(self) -> Self:
         """An independent copy."""
         twin = object.__new__(type(self))
-        twin.starts, twin.size = dict(self.starts), self.size
+        twin.starts, twin.size, twin._firsts = dict(self.starts), self.size, self._firsts
         twin._matrix, twin._vector = self._matrix.copy(), self._vector.copy()
         twin._reference = self._reference.copy()
         return twin
@@ -117,7 +126,7 @@ class Kirchhoff:
         self._reference[start:end] = reference
         self._matrix[range(start, end), range(start, end)] = [s**-2 for s in sigma]
         self.starts[variable] = start
-        self.size = end
+        self.size, self._firsts = end, {}
 
     def _grow(self, capacity: int) -> None:
         n = self.size
@@ -159,7 +168,7 @@ class Kirchhoff:
         gone_set = set(variables)
         start = 0
         remaining = [v for v in self.starts if v not in gone_set]
-        self.starts = {}
+        self.starts, self._firsts = {}, {}
         for v in remaining:
             self.starts[v] = start
             start += DIMENSION[v.kind]
@@ -180,8 +189,17 @@ class Kirchhoff:
         done, kernel = advance(self._matrix, self._vector, self.size, rows, transition, noise)
         flat = rows.ravel()
         if not done:
-            loosen(self._matrix, self._vector, self.size, flat, mended(kernel))
+            self.loosen(flat, kernel)
         self._reference[flat] = moved.ravel()
+
+    def loosen(self, rows: Indices, kernel: Array) -> None:
+        """The second half of `advance` where rounding has left Q⁻¹ + Eᵀ A E indefinite.
+
+        Args:
+            rows: those that move, k.
+            kernel: what is indefinite, k × k.
+        """
+        loosen(self._matrix, self._vector, self.size, rows, mended(kernel))
 
     def mend(self) -> None:
         """Make L positive definite where rounding has left it indefinite."""
@@ -193,12 +211,6 @@ class Kirchhoff:
             return factorise(self.information)
         except ValueError:
             return factorise(mended(self.information))
-
-    def settle(self, matrix: Array, reference: Array) -> None:
-        """Take over a solved system: L (n × n) linearised at the estimate x (n), where b is nil."""
-        self._matrix[: self.size, : self.size] = matrix
-        self._vector[: self.size] = 0.0
-        self._reference[: self.size] = reference
 
     def rebase(self, reference: Array) -> None:
         """Move the point of linearisation: b changes so that the estimate stays.

@@ -2,12 +2,21 @@
 
 from typing import Literal, NamedTuple
 
-VariableKind = Literal["position", "velocity", "unit", "range", "rssi"]
+VariableKind = Literal["position", "velocity", "unit", "range", "rssi", "altimeter"]
 """position: east, north, up (m); velocity: the same (m/s); unit: heading error ψ (rad), gyro bias β (rad/s)
 and step scale error s − 1 of a PDR unit; range: scale error and bias (m) of a ranging technology; rssi: power
-at 1 m (dBm) and path-loss exponent."""
+at 1 m (dBm) and path-loss exponent; altimeter: what one is off by now (m)."""
 
-DIMENSION: dict[VariableKind, int] = {"position": 3, "velocity": 3, "unit": 3, "range": 2, "rssi": 2}
+TECHNOLOGIES = frozenset({"range", "rssi", "altimeter"})
+"""Kinds of blocks that are no node's place or way, but last."""
+DIMENSION: dict[VariableKind, int] = {
+    "position": 3,
+    "velocity": 3,
+    "unit": 3,
+    "range": 2,
+    "rssi": 2,
+    "altimeter": 1,
+}
 
 
 class Variable(NamedTuple):

@@ -10,6 +10,7 @@ from numba import njit
 
 from estimator.graph.dense import Array
 from estimator.inertial.boot import BLOWN_M2PS4, ERRORS, FORCE, GRAVITY, GRAVITY_MPS2, SINCE_S, Boot
+from estimator.inertial.clipping import doubt, hidden_by
 from estimator.inertial.holding import hold
 from estimator.inertial.levelling import gather
 from estimator.inertial.loose import branch, loosen
@@ -31,8 +32,9 @@ def advance(boot: Boot, force: Array, rate: Array, step_s: float) -> int:
     Returns:
         How many samples it has taken: all, or those up to where it was levelled.
     """
-    sample, other = np.empty(6), np.empty(6)
+    sample, other, lost = np.empty(6), np.empty(6), np.empty(6)
     for i in range(len(force)):
+        hidden = hidden_by(boot.clipped, force[i], rate[i], step_s, lost)
         freed(boot.held, force[i], rate[i], sample)
         felt_by(boot.felt, sample[:3], sample[3:], boot.known[GRAVITY], step_s)
         if boot.told[0] >= 0.0:
@@ -44,6 +46,9 @@ def advance(boot: Boot, force: Array, rate: Array, step_s: float) -> int:
         freed(boot.free, force[i], rate[i], other)
         ahead = carry(boot.held, sample, boot.known[GRAVITY], FORCE, step_s)
         carry(boot.free, other, GRAVITY_MPS2, ERRORS, step_s)
+        if hidden:
+            doubt(boot.held, lost)
+            doubt(boot.free, lost)
         blow(boot.free, boot.felt[JERKED], step_s)
         rest(boot, rate[i], step_s)
         boot.loose[SINCE_S] += step_s

@@ -11,6 +11,8 @@ GRAVITY_MPS2 = 9.80665
 TOLD = 12
 """Numbers gathered while a boot is levelled: samples, forces 3, rates 3, their squares, seconds, and those of
 the rates' second half less those of its first, 3."""
+CLIPPED = 48
+"""Numbers that are remembered of the ends of its sensors' ranges, see `clipping.hidden_by`."""
 ERRORS = 18
 """Place, velocity, attitude, biases and scales of accelerometers, biases of gyros (3 each)."""
 VELOCITY, ATTITUDE, FORCE, SCALE, RATE = 3, 6, 9, 12, 15
@@ -77,6 +79,7 @@ class Boot(NamedTuple):
             their biases are known (rad/s); what the bias of its heading is less sure by than of one that has
             rested at first ((rad/s)²); and how long ago a rest has told it, if that is still to be said
             (s): 8.
+        clipped: what is known of the ends of its sensors' ranges, see `clipping.hidden_by`.
     """
 
     held: Strapdown
@@ -88,6 +91,7 @@ class Boot(NamedTuple):
     loose: Array
     unheld: Array
     gyros: Array
+    clipped: Array
 
     @classmethod
     def new(cls, heading_rad: float) -> Self:
@@ -102,6 +106,7 @@ class Boot(NamedTuple):
             np.zeros(16),
             np.zeros(6),
             np.zeros(8),
+            np.zeros(CLIPPED),
         )
 
     def anew(self) -> Self:
@@ -113,6 +118,7 @@ class Boot(NamedTuple):
         again.known[GRAVITY] = self.known[GRAVITY]
         again.loose[GLIDES_MPS : GLID_M + 2] = self.loose[GLIDES_MPS : GLID_M + 2]
         again.gyros[BIAS_RADPS] = self.gyros[BIAS_RADPS]
+        again.clipped[:] = self.clipped
         return again
 
     def copy(self) -> Self:

@@ -11,6 +11,7 @@ from estimator.inertial.boot import (
     ATTITUDE,
     BIAS_RADPS,
     CHANGED,
+    FARTHEST_RAD,
     FLAT_M2,
     FOOTHOLD_M,
     FORCE,
@@ -21,14 +22,13 @@ from estimator.inertial.boot import (
     VELOCITY,
     Boot,
 )
-from estimator.inertial.holding import UNHELD_S
+from estimator.inertial.clock import Clock, hears
+from estimator.inertial.led import Led, displacement_of
 from estimator.inertial.levelling import ALIGN_S, ANYWHERE_RAD
 from estimator.inertial.loose import tell
 from estimator.inertial.repeating import sift, unwatched
 from estimator.inertial.resting import TOLD_AFTER_S
 from estimator.inertial.samples import Samples
-from estimator.inertial.strapdown import ATTITUDE_WALK, FORCE_SIGMA_MPS2, SCALE_SIGMA
-from estimator.measurements.displacement import Displacement
 from estimator.measurements.imu import RATE_MIN_HZ
 
 EACH_S = 0.5
@@ -41,15 +41,14 @@ UNUSUAL = 4.0
 FOLLOWED, TOLD = 0.2, 0.1
 """So much of a jitter the boot's own clock follows with each piece, that none of the two clocks runs away;
 and so much a piece tells of how much they jitter."""
+UNPACED = 3.0
+"""What comes early by no more sigmas of its clock's pace may follow all the same, where nothing repeats."""
 BRIDGED_S = 0.1
 """So long a gap is bridged: between a swing's samples there is a straight line for a tenth of a second."""
 BRIDGED_OFF, FASTER_OFF = 0.3, 0.5
 """What a bridge may be off by, as a share of what goes on in it; and so much of its forces nothing holds."""
-STRIDE_SIGMA_M_PER_ROOT_M = 0.02
-"""Random error of a stride, more than the filter itself believes, which takes each standstill for perfect:
-published errors of ZUPT-aided units are 0.3 to 1 % of ways of some ten strides, heights as much."""
-FELT_OFF_MPS2 = math.hypot(FORCE_SIGMA_MPS2, SCALE_SIGMA * GRAVITY_MPS2)
-"""What its accelerometers may be off by, and no motion."""
+STRETCHES = 2.0
+"""Forces are summed up twice: a way is too long by twice as much as its time."""
 FASTEST_MPS = 25.0
 """A runner's boot swings twice as fast as he runs."""
 TURNS_RADPS, TURNED_RAD, TURNED_RADPS = 3.0, 1.0, 0.1
@@ -61,23 +60,6 @@ STEEP = "what its x axis faces can hardly be told when it begins: it points up o
 REPORTED = "samples of this time were reported before"
 BEGUN_MOST = 8
 """Of so many readings at once it is known that a part was new."""
-
-
-class Led(Displacement, tag="led", frozen=True):
-    """A displacement that samples have made: it counts with them.
-
-    Attributes:
-        up_m2: variance of its height beside `sigma_m`, as floors may not be flat (m²).
-        turned_rad2: variance that its heading gains, beside what the bias does to it (rad²).
-        bias_rad2ps2: variance that the bias of its heading takes: it has begun without a good rest, or a
-            rest has told that it was another one ((rad/s)²).
-        rested_radps: a rest has, some seconds ago: it is nil now but for so much (rad/s); nil: none has.
-    """
-
-    up_m2: float = 0.0
-    turned_rad2: float = 0.0
-    bias_rad2ps2: float = 0.0
-    rested_radps: float = 0.0
 
 
 class Navigation(NamedTuple):
@@ -94,6 +76,9 @@ class Navigation(NamedTuple):
         waiting: its newest samples which may turn out to be no readings, k × 6: they are not in `boot`.
         begun: when readings begin of which a part was new, and whose last piece is still to come, n (s).
         missing: so many before these are missing, and `boot` has not been told yet.
+        stretched_m: by how much its way may be too long or too short in all, for its clock's pace is not
+            known (m).
+        clock: how fast its samples come.
         boot: its strapdown navigation; its place counts from where it was at `told_t`.
     """
 
@@ -107,14 +92,18 @@ class Navigation(NamedTuple):
     waiting: Array
     begun: Array
     missing: int
+    stretched_m: float
+    clock: Clock
     boot: Boot
 
     @classmethod
-    def new(cls, t: float, heading_rad: float) -> Self:
-        """That of a boot of which nothing is known at `t` but what its x axis faces."""
+    def new(cls, t: float, heading_rad: float, rate_hz: float) -> Self:
+        """That of a boot of which nothing is known at `t` but what its x axis faces, and its rate is told."""
         began = t, t, heading_rad, 0.0, JITTER_S**2
         empty = np.zeros((0, 6)), np.zeros(0)
-        return cls(*began, np.zeros(6), unwatched(), *empty, 0, Boot.new(heading_rad))
+        return cls(
+            *began, np.zeros(6), unwatched(), *empty, 0, 0.0, Clock.new(rate_hz), Boot.new(heading_rad)
+        )
 
 
 class Navigated(NamedTuple):
@@ -143,7 +132,7 @@ def navigate(before: Navigation | None, piece: Samples, heading_rad: float) -> N
         piece: the samples.
         heading_rad: direction of the sensor's x axis at rest, seen from above, where the node is new.
     """
-    done = _navigated(before or Navigation.new(piece.t, heading_rad), piece)
+    done = _navigated(before or Navigation.new(piece.t, heading_rad, piece.rate_hz), piece)
     known, text = done.navigation, done.text
     others = known.begun[known.begun != piece.first_t]
     taken = text is None or bool(done.displacements) or len(others) < len(known.begun)
@@ -157,13 +146,20 @@ def _navigated(known: Navigation, piece: Samples) -> Navigated:
     if piece.rate_hz < RATE_MIN_HZ:
         text = f"{piece.rate_hz:g} samples a second are fewer than {RATE_MIN_HZ:g}"
         return Navigated(known, [], 0.0, text)
-    step_s = 1.0 / piece.rate_hz
-    samples, off_s = piece.array, piece.t - known.t
-    if off_s < -min(JITTER_MOST_S, 0.5 * piece.count * step_s):
+    samples, span_s = piece.array, known.clock.counted / piece.rate_hz
+    overlaps = bool((samples == known.newest).all(axis=1).any())
+    if piece.t == piece.first_t:
+        known = _timed(known, piece, overlaps)
+    step_s, new = known.clock.pace / piece.rate_hz, len(samples)
+    off_s = piece.first_t + (piece.t - piece.first_t) * known.clock.pace - known.t
+    usual_s = JITTER_MOST_S if overlaps else max(JITTER_MOST_S, UNPACED * known.clock.sigma * span_s)
+    if off_s < -min(usual_s, 0.5 * max(span_s, piece.count * step_s)):
         samples = samples[round(-off_s / step_s) :]
         if not len(samples):
             return Navigated(known, [], 0.0, REPORTED)
         off_s = 0.0
+    counted = known.clock.counted + (len(samples) if overlaps else new)
+    known = known._replace(clock=known.clock._replace(counted=counted))
     samples, known, turned = _joined(known, off_s, step_s, samples)
     sifted = sift(known.watch, known.waiting, samples, known.missing, step_s)
     found, texts, end_t = list[Led](), [sifted.text], known.t + len(samples) * step_s
@@ -176,6 +172,13 @@ def _navigated(known: Navigation, piece: Samples) -> Navigated:
         found, texts = found + led, [told, *texts]
     known = known._replace(t=end_t, watch=sifted.watch, waiting=sifted.waiting, missing=sifted.missing)
     return Navigated(known, found, turned, next((text for text in texts if text is not None), None))
+
+
+def _timed(known: Navigation, piece: Samples, overlaps: bool) -> Navigation:
+    """Learn from the epoch of a reading how fast its unit's samples come: those before end accordingly."""
+    clock = hears(known.clock, piece.t, piece.rate_hz, overlaps)
+    more_s = (clock.pace - known.clock.pace) * known.clock.counted / known.clock.rate_hz
+    return known._replace(t=known.t + more_s, clock=clock)
 
 
 def _joined(
@@ -233,6 +236,7 @@ def _led(
 ) -> tuple[list[Led], Navigation, str | None]:
     """What samples that go on from `known` lead to."""
     boot, told_t, unsure_m2 = known.boot.copy(), known.told_t, known.unsure_m2
+    stretched_m, pace_sigma = known.stretched_m, known.clock.sigma
     force, rate = np.ascontiguousarray(samples[:, :3]), np.ascontiguousarray(samples[:, 3:])
     found: list[Led] = []
     text, done = None, 0
@@ -240,22 +244,27 @@ def _led(
         # Up to where the next displacement is told, by the boot's own clock.
         upto = min(max(round((told_t + EACH_S - known.t) / step_s), done + 1), len(force))
         navigates, known_before = boot.levelled, boot.gyros[BIAS_RADPS] > 0.0
+        farthest_rad = float(boot.known[FARTHEST_RAD])
         done += advance(boot, force[done:upto], rate[done:upto], step_s)
+        boot.known[TURNED_RAD2] += pace_sigma**2 * (float(boot.known[FARTHEST_RAD]) ** 2 - farthest_rad**2)
         t = known.t + done * step_s
         if not navigates:
             if not boot.levelled and t > told_t + EACH_S + JITTER_MOST_S:
                 text = "its samples feel no gravity: the unit is dead, or measures in other units"
             if boot.levelled and not known_before:
                 # It stood meanwhile, or may have been swung anywhere.
-                found.append(_displacement(boot, node, max(told_t, t - ALIGN_S), t, 0.0))
+                found.append(displacement_of(boot, node, min(max(told_t, t - ALIGN_S), t), t, 0.0))
                 if math.sqrt(boot.known[TURNED_RAD2]) > STEEP_RAD:
                     text = STEEP
                 boot.gyros[CHANGED] = boot.known[TURNED_RAD2] = 0.0
             told_t = t if boot.levelled else told_t
         elif t >= told_t + EACH_S - 0.5 * step_s:
             tell(boot, t - told_t)
+            stretch_m = STRETCHES * pace_sigma * float(np.sqrt(np.dot(boot.held.place, boot.held.place)))
+            unsure_m2 += stretch_m * (stretch_m + 2.0 * stretched_m)
+            stretched_m += stretch_m
             if _sound(boot):
-                found.append(_displacement(boot, node, told_t, t, unsure_m2))
+                found.append(displacement_of(boot, node, told_t, t, unsure_m2))
             else:
                 text = "the boot never stood, or its samples are wrong: it is levelled anew"
                 boot = boot.anew()
@@ -268,33 +277,11 @@ def _led(
             if boot.gyros[RESTED_S] > TOLD_AFTER_S:
                 boot.gyros[RESTED_S] = 0.0
     end_t = known.t + len(force) * step_s
-    return found, known._replace(t=end_t, told_t=told_t, unsure_m2=unsure_m2, boot=boot), text
+    known = known._replace(t=end_t, told_t=told_t, unsure_m2=unsure_m2, stretched_m=stretched_m, boot=boot)
+    return found, known, text
 
 
 def _sound(boot: Boot) -> bool:
     """Whether it moves as a boot may, and knows how well it knows that."""
     speed = float(np.sqrt(np.dot(boot.held.velocity, boot.held.velocity)))
     return speed < FASTEST_MPS and all(bool(np.isfinite(array).all()) for array in (*boot.held, *boot.free))
-
-
-def _displacement(boot: Boot, node: str, from_t: float, t: float, unsure_m2: float) -> Led:
-    held, velocities = boot.held, range(VELOCITY, ATTITUDE)
-    east, north, up = held.place.tolist()
-    speed_m2 = max(float(held.covariance[velocities, velocities].max()), 0.0) * (t - from_t) ** 2
-    way_m2 = STRIDE_SIGMA_M_PER_ROOT_M**2 * float(np.sqrt(np.dot(held.place, held.place)))
-    moved_m2, lifted_m2 = boot.loose[MOVED_M2 : MOVED_M2 + 2].tolist()
-    # What it stands on may have moved: then it went so far at least, but for what its sensors feel at rest.
-    felt_m2 = (FELT_OFF_MPS2 * UNHELD_S * (t - from_t)) ** 2
-    moved_m2 = max(moved_m2, float(np.dot(boot.unheld[3:], boot.unheld[3:])) - felt_m2)
-    return Led(
-        t=t,
-        node=node,
-        delta_m=(east, north, up),
-        from_t=from_t,
-        heading_rad=boot.heading_rad,
-        sigma_m=math.sqrt(way_m2 + speed_m2 + moved_m2 + unsure_m2) + 1e-6,
-        up_m2=float(boot.footing[FLAT_M2]) + max(lifted_m2 - moved_m2, 0.0),
-        turned_rad2=ATTITUDE_WALK**2 * (t - from_t) + float(boot.known[TURNED_RAD2]),
-        bias_rad2ps2=float(boot.gyros[CHANGED]),
-        rested_radps=float(boot.gyros[BIAS_RADPS]) if boot.gyros[RESTED_S] > TOLD_AFTER_S else 0.0,
-    )

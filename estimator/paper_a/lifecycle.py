@@ -6,7 +6,8 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.graph.dense import Array
-from estimator.inertial.navigation import Led, navigate
+from estimator.inertial.led import Led
+from estimator.inertial.navigation import navigate
 from estimator.inertial.samples import pieces
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop

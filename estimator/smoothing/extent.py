@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from estimator.fusion.memory.prior import Key, Prior
+from estimator.fusion.memory.prior import SIZES, Key, Prior
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Indices
+from estimator.graph.variable import TECHNOLOGIES
 from estimator.smoothing.keyframes.layout import technology_key
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.solve import Problem
@@ -60,7 +61,7 @@ def trim(problem: Problem, solved: Solved) -> tuple[Prior, float] | None:
         at.append(layout.width + np.arange(start, start + 3))
     for key, start in layout.technologies.items():
         keys.append(key)
-        at.append(layout.width + np.arange(start, start + 2))
+        at.append(layout.width + np.arange(start, start + SIZES[key[0]]))
     chosen = np.concatenate(at) if at else np.zeros(0, dtype=np.intp)
     here = np.concatenate(
         [solved.x[cut * layout.width : (cut + 1) * layout.width], solved.x[layout.length * layout.width :]]
@@ -84,7 +85,7 @@ def restart(state: FusionState) -> None:
         at += [np.arange(*graph.rows(v).indices(graph.size)) for v in (node.position, rest)]
     for variable in graph.starts:
         owner = state.nodes.get(variable.owner)
-        if variable.kind in ("range", "rssi"):
+        if variable.kind in TECHNOLOGIES:
             keys.append(technology_key(state, variable))
         elif owner is not None and owner.mode == "static":
             keys.append(("stand", owner.index))

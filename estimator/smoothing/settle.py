@@ -5,7 +5,7 @@ import numpy as np
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array, Indices
 from estimator.graph.kirchhoff import Kirchhoff, marginalised
-from estimator.graph.variable import Variable
+from estimator.graph.variable import DIMENSION, TECHNOLOGIES, Variable
 from estimator.smoothing.keyframes.layout import Layout, technology_key
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.solved import Solved
@@ -40,10 +40,9 @@ def settle(state: FusionState, layout: Layout, solved: Solved, matrix: Array) ->
         else:
             gone.append(own)
     for variable in graph.starts:
-        if variable.kind in ("range", "rssi"):
-            columns[variable] = (
-                layout.width + np.arange(2) + layout.technologies[technology_key(state, variable)]
-            )
+        if variable.kind in TECHNOLOGIES:
+            start = layout.width + layout.technologies[technology_key(state, variable)]
+            columns[variable] = start + np.arange(DIMENSION[variable.kind])
     order = [v for v in graph.starts if v in columns]
     if len(order) != len(graph.starts):
         raise ValueError("the window does not hold all that the filter holds")

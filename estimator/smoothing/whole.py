@@ -13,15 +13,18 @@ from estimator.fusion.entering.beginnings import decide
 from estimator.fusion.memory.ledger import Ledger
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.order import UNTIL_T
-from estimator.fusion.tick import flush, fold_tick, keep_poses
+from estimator.fusion.tick import flush, fold_tick
 from estimator.graph.robust import mixture_cost
 from estimator.inertial.samples import AnyFolded
 from estimator.smoothing.changes.branch import branch, reunite
 from estimator.smoothing.changes.elsewhere import GAIN, USUAL_COST
 from estimator.smoothing.changes.moved import Moved, moved_nodes
 from estimator.smoothing.extent import spacing_s as usual_s
+from estimator.smoothing.images.climbed import climbed
 from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.learning.delays import delays, distrust, doubted
 from estimator.smoothing.learning.learn import learn
+from estimator.smoothing.learning.ranging import learn_ranging
 from estimator.smoothing.learning.slips import withdraw
 from estimator.smoothing.problem.solve import RESTING, Problem
 from estimator.smoothing.problem.solved import Solved
@@ -39,6 +42,8 @@ TICK_S = 2.0
 ones a node moves too far for the noise that is learned on the way."""
 RARER = 48.0
 """The first pass only finds where to start: its window is solved this many times more rarely."""
+DELAYS = 3
+"""So often is it asked at most which radios are off: each answer may hide another one."""
 MOVES = 20
 """So many nodes at most are found elsewhere at a time: each asks for another solution."""
 LARGEST = 60_000_000
@@ -65,7 +70,7 @@ def first_pass(
         start = end
     flush(state)
     look_again(state)
-    keep_poses(state)
+    state.keep_poses()
     return state
 
 
@@ -77,9 +82,26 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     technology is calibrated the first pass has judged. The same walls, met again and again for hours, look
     like a scale that is surer and surer.
 
+    Where a radio turns out to be off, everything is solved anew with a bias of its own.
+
     Args:
         state: the fusion after all readings, with a complete ledger; the solution's may be a copy of it.
     """
+    problem, solved = _solved(state)
+    for _ in range(DELAYS):
+        judged = problem.solve(solved.x, iterations=0)
+        judged.chain.reduce()
+        found = doubted(delays(problem, judged), GAIN)
+        if not found:
+            break
+        state = problem.layout.state
+        distrust(state, found)
+        problem, solved = _solved(state)
+    return problem, solved
+
+
+def _solved(state: FusionState) -> tuple[Problem, Solved]:
+    """The whole incident solved with those radios believed that the state trusts."""
     withdraw(state)
     other = state.copy()
     begun = [_begun(state)]
@@ -90,6 +112,8 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
     state, rows = problem.layout.state, problem.rows
     first, *later = LEARNING
     learn(state, problem, solved, first, kinds=False)
+    if learn_ranging(state, problem, solved):
+        rows.learn(state.noise)
     for most in later:
         problem = Problem(_layout(state), rows, None)
         solved = problem.solve(solved.x, iterations=1)
@@ -105,6 +129,7 @@ def _begun(state: FusionState) -> tuple[Problem, Solved]:
     """A solution that is at rest enough to be learned from, with all nodes that were moved where they lie."""
     problem = _problem(state)
     solved = problem.solve(problem.layout.start(), SLACKS_M, resting=LEARNING_RESTING)
+    problem, solved = climbed(problem, solved, _problem, LEARNING_RESTING)
     return _settled(problem, solved, LEARNING_RESTING)
 
 

@@ -7,6 +7,7 @@ no reading inside the window stays linearised at an estimate that has turned out
 """
 
 from collections.abc import Collection
+from functools import partial
 
 import numpy as np
 from msgspec.structs import replace
@@ -16,9 +17,13 @@ from estimator.fusion.entering.beginnings import decide
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
+from estimator.smoothing.changes.apart import ask_apart
 from estimator.smoothing.changes.branch import branch
 from estimator.smoothing.changes.changed import changed_links
+from estimator.smoothing.changes.clocks import set_clocks
+from estimator.smoothing.changes.heard import Hearing
 from estimator.smoothing.changes.moved import moved_nodes
+from estimator.smoothing.changes.twice import tell_twice
 from estimator.smoothing.extent import (
     LONGEST_S,
     SHORTEST_S,
@@ -29,6 +34,7 @@ from estimator.smoothing.extent import (
     trim,
     work,
 )
+from estimator.smoothing.images.climbed import climbed, hinted
 from estimator.smoothing.images.flips import heard_by
 from estimator.smoothing.images.likeliest import likeliest
 from estimator.smoothing.images.otherwise import otherwise
@@ -97,6 +103,18 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
         # Most ticks come too soon for any window: how much work this one is need not be asked.
         if waited_s < periods * SOONEST_S or waited_s / period_s(state) < periods:
             return
+    solve_now(state, t)
+
+
+def solve_now(state: FusionState, t: float) -> None:
+    """After a tick that ends at `t`, solve the window again, due or not; before anybody began, nothing.
+
+    Args:
+        state: the fusion, changed in place.
+        t: end of the tick (s).
+    """
+    if state.begun_t is None:
+        return
     solved_t = state.refreshed_t
     state.due, state.refreshed_t, state.bent_m = False, t, 0.0
     if refresh(state, solved_t) and state.due:
@@ -131,11 +149,11 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         restart(state)
         return False
     try:
-        layout = Layout(state, since, spacing_s(state), state.prior)
-        rows = Rows(layout, since)
-        rows.learn(state.noise)
-        begun = Problem(layout, rows, state.prior)
-        judged = likeliest(begun, _solved(begun, layout.start(), solved_t))
+        begun = _problem(state, since)
+        start = _solved(begun, begun.layout.start(), solved_t)
+        if hinted(begun, start):
+            begun, start = climbed(begun, start, partial(_problem, since=since), RESTING)
+        layout, judged = begun.layout, likeliest(begun, start)
         problem, solved, modes, state.exposed, asked = judged
         trimmed = trim(problem, solved)
         left = solved.chain.remainder(layout.length - 1)
@@ -144,6 +162,9 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         for name, images in otherwise(layout, solved.x, modes).items():
             state.nodes[name] = replace(state.nodes[name], otherwise=images)
         found = learn(state, problem, solved)
+        hearing = Hearing(problem, solved)
+        ask_apart(state, hearing, set_clocks(state, hearing, solved_t))
+        tell_twice(state, hearing)
         _judge_turns(problem, solved, found, asked)
         _tell_changes(state, problem, solved)
     except ValueError as error:
@@ -164,6 +185,13 @@ def period_s(state: FusionState) -> float:
     span = state.newest_t - (state.newest_t if state.window_t is None else state.window_t)
     usual = min(max(YOUNG * span, SOONEST_S), PERIOD_S)
     return usual * max(1.0, SHORTEST_S / spacing_s(state) * work(state) / WORK)
+
+
+def _problem(state: FusionState, since: float) -> Problem:
+    layout = Layout(state, since, spacing_s(state), state.prior)
+    rows = Rows(layout, since)
+    rows.learn(state.noise)
+    return Problem(layout, rows, state.prior)
 
 
 def _solved(problem: Problem, x: Array, solved_t: float) -> Solved:

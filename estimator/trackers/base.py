@@ -44,6 +44,13 @@ class Tracker(Protocol):
             KeyError: a node is not known.
         """
 
+    def settled(self) -> Self | None:
+        """Where late readings were folded in a hurry: a tracker that tells what they make without one.
+
+        It is to be asked, and nothing is to be folded with it: this one goes on as if nothing had been. None:
+        this one tells all that there is.
+        """
+
     def take_notices(self) -> list[Notice]:
         """What was noticed since the last call."""
 

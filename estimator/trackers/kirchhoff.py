@@ -15,14 +15,14 @@ from estimator.estimate import NodeEstimate, Notice, Relative
 from estimator.fusion import report
 from estimator.fusion.memory.encode import FusionRecord, record_of, state_of
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.tick import flush
+from estimator.fusion.picture import look
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.lag import Lag, LagRecord
 from estimator.trackers.snapshot import read_snapshot
 
-VERSION = 22
+VERSION = 28
 
 
 class _Snapshot(msgspec.Struct, frozen=True, array_like=True):
@@ -51,12 +51,19 @@ class KirchhoffTracker:
     def _picture(self) -> tuple[FusionState, Array]:
         """The state to be shown and its covariance; what waits for a displacement is held against it here."""
         if self._shown is None:
-            state = self._lag.state()
-            if state.waiting:
-                state = state.copy()
-                flush(state)
-            self._shown = state, report.covariance_of(state)
+            self._shown = _told(self._lag.state())
         return self._shown
+
+    def settled(self) -> Self | None:
+        """What to ask where late readings were folded in a hurry, and there is time; None: this one."""
+        state = self._lag.settled()
+        return None if state is None else self._showing(self.settings, state)
+
+    @classmethod
+    def _showing(cls, settings: TrackerSettings, state: FusionState) -> Self:
+        tracker = cls(settings)
+        tracker._shown = _told(state)
+        return tracker
 
     def estimates(self) -> list[NodeEstimate]:
         """Every node ever introduced, in order of introduction."""
@@ -94,3 +101,10 @@ class KirchhoffTracker:
         tracker = cls(snapshot.settings)
         tracker._lag = Lag.of(snapshot.settings.lag_s, snapshot.lag, [state_of(r) for r in snapshot.fusion])
         return tracker
+
+
+def _told(state: FusionState) -> tuple[FusionState, Array]:
+    if state.waiting:
+        state = state.copy()
+        look(state)
+    return state, report.covariance_of(state)

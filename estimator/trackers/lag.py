@@ -3,6 +3,9 @@
 The estimates are a function of the set of readings inside the lag, not of the order in which they arrived:
 each tick is folded from the state before it and its own readings in canonical order. Folding happens when
 something is asked for, so many batches cost one pass.
+
+Where late readings go on coming, this would be the work of a whole lag each second. Then what is shown is
+folded in a hurry, and the sure chain follows behind them (decision 0052): a function of the log all the same.
 """
 
 import math
@@ -15,15 +18,28 @@ import msgspec
 
 from estimator.estimate import Notice
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.order import end_of_tick, place_of, tick_of
-from estimator.fusion.tick import fold_tick, names_of
+from estimator.fusion.order import tick_of
+from estimator.fusion.tick import names_of
 from estimator.inertial.samples import AnyFolded, Samples, in_pieces
 from estimator.measurements import AnyReading
-from estimator.smoothing.window import keep_up
+from estimator.trackers.chain import Chain, hurried
+from estimator.trackers.hurry import Hurry
 
-AGES_S, SPACINGS_S = (4.0, 16.0), (0.0, 4.0, 16.0)
-"""Up to each age, and beyond the last, checkpoints are kept so far apart: a reading late by x is folded anew
-over about x, no more."""
+LEAPS_KEPT = 8
+
+
+class Leap(msgspec.Struct, frozen=True, array_like=True):
+    """A reading that put the newest epoch forward by more than the lag: what goes on from before is too late.
+
+    Attributes:
+        node: the node that it names first.
+        from_t: the newest epoch before it (s); None: there was none.
+        to_t: the newest epoch with it (s).
+    """
+
+    node: str
+    from_t: float | None
+    to_t: float
 
 
 class LagRecord(msgspec.Struct, frozen=True, array_like=True):
@@ -39,6 +55,9 @@ class LagRecord(msgspec.Struct, frozen=True, array_like=True):
         given: notices of each tick that were taken.
         loose: notices not taken yet that belong to no tick.
         late: see `Lag`.
+        leaps: see `Lag`.
+        hurry: see `Hurry`.
+        shown: tick of each state kept of the chain in a hurry; they come after the others.
     """
 
     newest_t: float | None
@@ -50,6 +69,9 @@ class LagRecord(msgspec.Struct, frozen=True, array_like=True):
     given: dict[int, list[Notice]]
     loose: list[Notice]
     late: dict[str, int] = msgspec.field(default_factory=dict)
+    leaps: list[Leap] = msgspec.field(default_factory=list)
+    hurry: Hurry = msgspec.field(default_factory=Hurry)
+    shown: list[int] = msgspec.field(default_factory=list)
 
 
 class Lag:
@@ -61,6 +83,7 @@ class Lag:
         too_late: readings that came too late.
         received: all readings.
         late: of those that came too late, how many name each node first.
+        leaps: the newest leaps of the newest epoch.
     """
 
     def __init__(self, lag_s: float, state: FusionState) -> None:
@@ -69,10 +92,12 @@ class Lag:
         self.too_late = 0
         self.received = 0
         self.late: dict[str, int] = {}
+        self.leaps: list[Leap] = []
         self._ticks: list[int] = []
         self._readings: dict[int, list[AnyFolded]] = {}
-        self._checkpoints: list[tuple[int, FusionState]] = [(-1, state)]
-        self._folded = -1
+        self._sure = Chain([(-1, state)])
+        self._hurry = Hurry()
+        self._shown: Chain | None = None
         self._notices: dict[int, list[Notice]] = {}
         self._given: dict[int, list[Notice]] = {}
         self._loose: list[Notice] = []
@@ -82,35 +107,36 @@ class Lag:
         """The lag that a record and its states were made of."""
         lag = cls(lag_s, states[0])
         lag.newest_t, lag.too_late, lag.received = record.newest_t, record.too_late, record.received
-        lag.late = dict(record.late)
+        lag.late, lag.leaps = dict(record.late), list(record.leaps)
         lag._ticks = [tick for tick, _ in record.readings]
         lag._readings = {tick: list(readings) for tick, readings in record.readings}
-        lag._checkpoints = list(zip(record.checkpoints, states, strict=True))
-        lag._folded = record.checkpoints[-1]
+        first = len(record.checkpoints)
+        lag._sure = Chain(list(zip(record.checkpoints, states[:first], strict=True)))
+        lag._hurry = record.hurry
+        if record.shown:
+            lag._shown = Chain(list(zip(record.shown, states[first:], strict=True)))
         lag._notices, lag._given, lag._loose = record.notices, record.given, record.loose
         return lag
 
     def record(self) -> tuple[LagRecord, list[FusionState]]:
-        """A record of everything, and the states that belong to it.
-
-        Only the oldest and the newest checkpoint go in: those between are folded anew when they are needed.
-        """
+        """A record of everything, and the states that belong to it, at most two of each chain."""
         self.state()
-        checkpoints = (
-            self._checkpoints if len(self._checkpoints) < 3 else [self._checkpoints[0], self._checkpoints[-1]]
-        )
+        sure, shown = self._sure.ends(), [] if self._shown is None else self._shown.ends()
         record = LagRecord(
             self.newest_t,
             self.too_late,
             self.received,
             [(tick, list(self._readings[tick])) for tick in self._ticks],
-            [tick for tick, _ in checkpoints],
+            [tick for tick, _ in sure],
             self._notices,
             self._given,
             self._loose,
             dict(self.late),
+            list(self.leaps),
+            msgspec.structs.replace(self._hurry),
+            [tick for tick, _ in shown],
         )
-        return record, [state for _, state in checkpoints]
+        return record, [state for _, state in (*sure, *shown)]
 
     def add(self, readings: Sequence[AnyReading], known_t: float = math.inf) -> None:
         """Take readings in; those beyond the lag are counted and noticed.
@@ -120,6 +146,7 @@ class Lag:
             known_t: when they came, by a clock that can be trusted (s): by no later epoch others are late.
         """
         missed: dict[str, AnyFolded] = {}
+        room: tuple[int, int] | None = None
         self.received += len(readings)
         in_order = sorted(((r.until_t, r) for r in in_pieces(readings)), key=itemgetter(0))
         for until_t, reading in in_order:
@@ -130,71 +157,92 @@ class Lag:
                     self.late[node] = self.late.get(node, 0) + 1
                     missed[node] = reading
                 continue
-            newest_t = min(until_t, known_t)
-            self.newest_t = newest_t if self.newest_t is None else max(self.newest_t, newest_t)
-            tick = tick_of(until_t)
-            if tick not in self._readings:
-                self._readings[tick] = []
-                insort(self._ticks, tick)
+            tick, now = tick_of(until_t), tick_of(self._go_on(min(until_t, known_t), reading))
+            if room != (tick, now):
+                room = tick, now
+                self._make_room(tick, now)
             self._readings[tick].append(reading)
-            if tick <= self._folded:
-                self._roll_back(tick)
         for node, newest in missed.items():
-            self._loose.append(
-                Notice(code="too_late", t=newest.t, node=node, text=_too_late(self.late[node], self.lag_s))
-            )
+            text = _too_late(self.late[node], self.lag_s) + self._why_late(newest.until_t)
+            self._loose.append(Notice(code="too_late", t=newest.t, node=node, text=text))
 
-    def _roll_back(self, tick: int) -> None:
-        while self._checkpoints[-1][0] >= tick:
-            self._checkpoints.pop()
-        self._folded = self._checkpoints[-1][0]
+    def _go_on(self, t: float, reading: AnyFolded) -> float:
+        """Let the newest epoch be no older than `t` (s), note where it leaps, and return it."""
+        before_t = self.newest_t
+        if before_t is None or t > before_t + self.lag_s:
+            self.leaps.append(Leap(names_of(reading)[0], before_t, t))
+            del self.leaps[:-LEAPS_KEPT]
+        self.newest_t = t if before_t is None else max(before_t, t)
+        return self.newest_t
+
+    def _why_late(self, t: float) -> str:
+        """Whose reading made an epoch (s) too late, where one alone did."""
+        for leap in self.leaps:
+            since_t = -math.inf if leap.from_t is None else leap.from_t - self.lag_s
+            if since_t <= t < leap.to_t - self.lag_s:
+                by = "" if leap.from_t is None else f" by {leap.to_t - leap.from_t:.0f} s"
+                return f": a reading of {leap.node} put time forward{by} to t = {leap.to_t:.0f}"
+        return ""
+
+    def _make_room(self, tick: int, now: int) -> None:
+        """Roll back to before a tick that readings are of, where they come late, and make it one of those.
+
+        Args:
+            tick: of the readings.
+            now: tick of incident time, with them.
+        """
+        newest = self._ticks[-1] if self._ticks else tick
+        self._hurry.go_on(now, max(newest, tick))
+        if self._hurry.comes(tick, newest) or not self._hurry.on:
+            self._shown = None
+        self._sure.roll_back(tick)
+        if self._shown is not None:
+            self._shown.roll_back(tick)
+        if tick not in self._readings:
+            self._readings[tick] = []
+            insort(self._ticks, tick)
 
     def state(self) -> FusionState:
         """The filter after all readings so far; not to be changed."""
-        first = bisect_left(self._ticks, self._folded + 1)
-        for tick in self._ticks[first:]:
-            before = self._checkpoints[-1][1]
-            after = before.copy()
-            in_order = sorted(self._readings[tick], key=place_of)
-            fold_tick(after, end_of_tick(tick), in_order)
-            keep_up(after, end_of_tick(tick))
-            self._notices[tick] = list(after.notices)
-            self._checkpoints.append((tick, after))
-            self._folded = tick
-            self._thin(tick)
+        hurry = self._hurry
+        if hurry.on and self._shown is None:
+            self._extend(self._sure, hurry.since)
+            ticks = self._after(hurry.since, hurry.until)
+            self._shown = hurried(self._sure.state, ticks, self._readings, self._notices)
+        if self._shown is not None:
+            self._extend(self._shown)
+        self._extend(self._sure, hurry.front)
         self._commit()
-        return self._checkpoints[-1][1]
+        return (self._shown or self._sure).state
 
-    def _thin(self, newest: int) -> None:
-        """Leave checkpoints out as they age; the two newest always stay."""
-        now, before = end_of_tick(newest), (0.0, 0.0)
-        thinned: list[tuple[int, FusionState]] = []
-        for i, checkpoint in enumerate(self._checkpoints[:-2]):
-            end = end_of_tick(checkpoint[0])
-            spacing = SPACINGS_S[bisect_left(AGES_S, now - end)]
-            if spacing == 0.0:
-                thinned += self._checkpoints[i:]
-                break
-            bucket = (spacing, end // spacing)
-            # The oldest of each bucket stays, so that what has grown old enough to be thinned is not lost
-            # again.
-            if bucket != before:
-                before = bucket
-                thinned.append(checkpoint)
-        else:
-            thinned += self._checkpoints[-2:]
-        self._checkpoints = thinned
+    def settled(self) -> FusionState | None:
+        """What `state` would be if there were no hurry, which goes on; None: there is none."""
+        self.state()
+        if not self._hurry.on:
+            return None
+        chain = Chain(self._sure.checkpoints)
+        chain.extend(self._after(chain.folded), self._readings, {})
+        return chain.state
+
+    def _extend(self, chain: Chain, until: int | None = None) -> None:
+        """Fold on to a tick, with it, or to the newest one."""
+        chain.extend(self._after(chain.folded, until), self._readings, self._notices)
+
+    def _after(self, tick: int, until: int | None = None) -> list[int]:
+        end = len(self._ticks) if until is None else bisect_left(self._ticks, until + 1)
+        return self._ticks[bisect_left(self._ticks, tick + 1) : end]
 
     def _commit(self) -> None:
         """Forget readings that nothing can come before any more, and the checkpoints under them."""
         if self.newest_t is None:
             return
         horizon = tick_of(self.newest_t - self.lag_s)
-        base = bisect_left(self._checkpoints, horizon, key=lambda c: c[0]) - 1
+        checkpoints = self._sure.checkpoints
+        base = bisect_left(checkpoints, horizon, key=lambda c: c[0]) - 1
         if base <= 0:
             return
-        del self._checkpoints[:base]
-        done = bisect_left(self._ticks, self._checkpoints[0][0] + 1)
+        del checkpoints[:base]
+        done = bisect_left(self._ticks, checkpoints[0][0] + 1)
         for tick in self._ticks[:done]:
             del self._readings[tick]
             self._loose.extend(self._fresh(tick))

@@ -34,7 +34,7 @@ from estimator.paper_a.state import PaperAState
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.snapshot import read_snapshot
 
-VERSION = 6
+VERSION = 8
 ORDER: dict[type, int] = {
     Node: 0,
     Displacement: 1,
@@ -138,6 +138,10 @@ class PaperATracker:
             KeyError: a node is not known.
         """
         return self._state.relative(self._sigma(), a, b)
+
+    def settled(self) -> None:
+        """Nothing is ever folded in a hurry."""
+        return
 
     def take_notices(self) -> list[Notice]:
         """What was noticed since the last call."""

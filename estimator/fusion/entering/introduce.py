@@ -38,6 +38,8 @@ def introduce(state: FusionState, reading: Node) -> bool:
         node = replace(node, heading_rad=reading.heading_rad)
     if reading.heading_sigma_rad is not None:
         node = replace(node, heading_sigma_rad=reading.heading_sigma_rad)
+    if reading.device is not None:
+        node = replace(node, device=reading.device)
     state.nodes[node.node] = node
     if node.mode == "undecided":
         _place_new(state, node, reading)

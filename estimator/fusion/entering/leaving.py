@@ -2,8 +2,8 @@
 
 from msgspec.structs import replace
 
+from estimator.fusion.entering.apart import elsewhere_m2
 from estimator.fusion.entering.introduce import tuple_of, upper_triangle
-from estimator.fusion.images import doubt_m2
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.swings import loose_headings, swung_m2
@@ -32,12 +32,12 @@ def _marginalise(state: FusionState, node: NodeState, t: float) -> None:
     if node.decided:
         place_m = tuple_of(state.graph.value(node.position))
         rows = state.graph.rows(node.position)
-        doubt = doubt_m2(node.otherwise, state.graph.value(node.position)[:2])
+        doubt = elsewhere_m2(node, state.graph.value(node.position)[:2])
         covariance = state.graph.covariance()
         own = covariance[rows, rows] + doubt
         loose = loose_headings(state, covariance)
         own += swung_m2(covariance[None, rows, loose], covariance[loose, loose])[0]
-        own[2, 2] += node.doubt_up_m2
+        own[2, 2] = max(own[2, 2], node.doubt_up_m2)
         covariance_m2 = upper_triangle(own)
         owned = [v for v in (node.position, node.velocity, node.unit) if v in state.graph]
         state.graph.delete_nodes(owned)

@@ -11,6 +11,7 @@ from msgspec.structs import replace
 from estimator.fusion import physics
 from estimator.fusion.entering.again import call
 from estimator.fusion.entering.anew import CONTRADICTED, SET_OFF_M, error_of, known_before
+from estimator.fusion.entering.changed import announce, wears_another
 from estimator.fusion.entering.introduce import attach_unit, introduce, place, told_sigma_m
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -36,8 +37,11 @@ def take(state: FusionState, reading: Node) -> list[Position]:
     if known is not None and known.mode == "retired":
         call(state, reading)
         return []
+    changes = known is not None and wears_another(known, reading)
     if not introduce(state, reading):
         return []
+    if changes:
+        announce(state, reading)
     told = [] if known is None or not known.decided else _told_again(state, known, reading)
     if not told:
         state.count("fused")
@@ -46,7 +50,7 @@ def take(state: FusionState, reading: Node) -> list[Position]:
 
 def _told_again(state: FusionState, known: NodeState, reading: Node) -> list[Position]:
     node, where_m = state.nodes[reading.node], reading.position_m
-    if known.mode == "unit" and _faces_elsewhere(known, reading):
+    if known.mode == "unit" and node.changed is None and _faces_elsewhere(known, reading):
         _face(state, node, reading)
         node = state.nodes[reading.node]
     sigma, told_m = told_sigma_m(reading), known.absolute.told_m

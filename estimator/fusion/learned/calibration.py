@@ -9,6 +9,7 @@ import math
 import msgspec
 
 from estimator.fusion import physics
+from estimator.fusion.learned.delays import delays, reported_as
 
 NOTHING = 1e-6
 """Share of the information on a number below which readings have told nothing of it."""
@@ -75,7 +76,8 @@ def scale_sigma(share: float, narrow: float) -> float:
 
 def bias_sigma_m(technology: str) -> float:
     """Standard deviation of the prior of a technology's bias (m)."""
-    return physics.RANGE_BIAS_SIGMA_M.get(technology, physics.RANGE_BIAS_OTHER_SIGMA_M)
+    usual = physics.RANGE_BIAS_SIGMA_M.get(reported_as(technology), physics.RANGE_BIAS_OTHER_SIGMA_M)
+    return math.hypot(usual, math.sqrt(delays(technology)) * physics.DELAY_SIGMA_M)
 
 
 def uncalibrated(sigma: float, estimate: float, variance: float, narrow: float) -> float:

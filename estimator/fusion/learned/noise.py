@@ -47,11 +47,17 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
     @property
     def shared(self) -> float:
         """Share of the variance that successive readings on one link have in common, 0 to 0.95."""
-        return min(max(self.products / self.pairs / self.factor**2, 0.0), 0.95)
+        return self.terms(0.0)[1]
 
     def outliers(self, usual: float) -> float:
         """Share of outliers, from the usual one on."""
         return float((self.odd + physics.OUTLIER_PRIOR * usual) / (self.seen + physics.OUTLIER_PRIOR))
+
+    def terms(self, usual: float) -> tuple[float, float, float]:
+        """`factor`, `shared` and `outliers` from the usual share on, worked out together."""
+        factor = self.factor
+        shared = min(max(self.products / self.pairs / factor**2, 0.0), 0.95)
+        return factor, shared, self.outliers(usual)
 
     def with_errors(
         self,
@@ -77,9 +83,9 @@ class LearnedNoise(msgspec.Struct, frozen=True, array_like=True):
         """
         gone_s = 0.0 if self.t is None else max(t - self.t, 0.0)
         recent = math.exp(-gone_s / physics.POWER_NOISE_MEMORY_S) if powers else 0.0
-        kept, kept_pairs, kept_seen = (
-            max(recent, physics.NOISE_MEMORY / (physics.NOISE_MEMORY + more)) for more in (count, pairs, seen)
-        )
+        memory = physics.NOISE_MEMORY
+        kept = max(recent, memory / (memory + count))
+        kept_pairs, kept_seen = max(recent, memory / (memory + pairs)), max(recent, memory / (memory + seen))
         return LearnedNoise(
             kept * self.count + count,
             kept * self.squares + squares,

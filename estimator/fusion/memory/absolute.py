@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from estimator.estimate import Vector3
 from estimator.fusion.learned.noise import single_sigma
+from estimator.fusion.learned.zeroed import Zeroed
 from estimator.fusion.physics import TICK_S
 
 
@@ -72,6 +73,7 @@ class Absolute(msgspec.Struct, frozen=True, array_like=True, gc=False):
         told_m: where its `node` reading told it to be (m).
         fixes: its fixes.
         heights: its altimeter's readings.
+        zeroed: what its altimeter is off by.
         fits: seconds with a fix that fitted, while its beginning is not sure.
         against: such seconds in a row with fixes that agree with each other, not with where it seems to be.
         off_m: how far the newest of them is off, east and north (m).
@@ -82,6 +84,7 @@ class Absolute(msgspec.Struct, frozen=True, array_like=True, gc=False):
     told_m: Vector3 | None = None
     fixes: Alike = Alike()
     heights: Alike = Alike()
+    zeroed: Zeroed = Zeroed()
     fits: int = 0
     against: int = 0
     off_m: tuple[float, float] = (0.0, 0.0)

@@ -3,6 +3,7 @@
 import msgspec
 
 from estimator.fusion.learned.calibration import Calibration
+from estimator.fusion.learned.delays import Radio
 from estimator.fusion.learned.links import Links
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.learned.reach import Reach
@@ -57,7 +58,12 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     prior: PriorRecord | None
     calibrations: dict[str, Calibration]
     bent_m: float
+    level_cost: float
     navigations: dict[str, NavigationRecord]
+    delayed: list[Radio]
+    delays_t: float
+    altimeters: dict[str, float]
+    clocks: dict[str, float]
     reach: Reach
     listeners: dict[str, Listener]
 
@@ -100,7 +106,12 @@ def record_of(state: FusionState) -> FusionRecord:
         ),
         dict(state.calibrations),
         state.bent_m,
+        state.level_cost,
         {name: navigation_record_of(known) for name, known in state.navigations.items()},
+        list(state.delayed),
+        state.delays_t,
+        dict(state.altimeters),
+        dict(state.clocks),
         state.reach,
         dict(state.listeners),
     )
@@ -125,7 +136,11 @@ def state_of(record: FusionRecord) -> FusionState:
     state.suspected, state.exposed = record.suspected, record.exposed
     state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
     state.calibrations, state.bent_m = record.calibrations, record.bent_m
+    state.level_cost = record.level_cost
     state.navigations = {name: navigation_of(known) for name, known in record.navigations.items()}
+    state.delayed, state.delays_t = dict.fromkeys(record.delayed), record.delays_t
+    state.altimeters = dict(record.altimeters)
+    state.clocks = dict(record.clocks)
     state.reach, state.listeners = record.reach, record.listeners
     if record.prior is not None:
         matrix, vector, reference = (unpack(a) for a in record.prior.arrays)

@@ -12,7 +12,7 @@ Table = Literal["pairs", "singles", "steps", "drops", "begins", "stands", "poses
 
 COLUMNS: dict[Table, tuple[str, ...]] = {
     "pairs": ("t", "kind", "a", "b", "value", "sigma", "source", "constant", "alike", "link", "echo"),
-    "singles": ("t", "node", "axis", "value", "sigma", "noise"),
+    "singles": ("t", "node", "axis", "value", "sigma", "noise", "source"),
     "steps": ("t", "node", "start_t", "e", "n", "u", "across2", "up2", "turn2", "bias2", "scale2", "given"),
     "drops": ("t", "node", "by"),
     "begins": ("t", "node", "unit", "role", "e", "n", "u", "se", "sn", "su", "turn", "turn_sigma"),

@@ -1,5 +1,6 @@
 """What the tracker keeps of each node beside its block in the Kirchhoff matrix."""
 
+import math
 from functools import lru_cache
 from typing import Literal
 
@@ -8,8 +9,10 @@ import msgspec
 from estimator.estimate import Covariance6, Vector3
 from estimator.fusion.images import Otherwise
 from estimator.fusion.learned.calibration import UNTOLD, Told
+from estimator.fusion.learned.rival import Rival
 from estimator.fusion.learned.standing import Standing
 from estimator.fusion.memory.absolute import Absolute
+from estimator.fusion.memory.apart import Apart
 from estimator.graph.variable import Variable
 from estimator.measurements.node import Role
 
@@ -34,6 +37,13 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         covariance_m2: of `place_m`, where it is retired.
         heading_rad: as told by its `node` reading.
         heading_sigma_rad: as told by its `node` reading.
+        device: what hardware it wears, as told by its `node` readings.
+        changed: when another unit was told to be worn (s), and what it faces, if that was told (rad); until
+            that one reports.
+        rival: its way by ranges alone, beside the one that its unit tells.
+        frame_rad: how the frame of its unit is turned against the one that ψ counts from (rad).
+        apart: its unit is not where its radio is.
+        joined_t: when its unit was where its radio is again (s).
         first_heading_rad: heading that its unit reported first, in the unit's frame.
         unit_heading_rad: newest heading that its unit reported, in the unit's frame.
         speed_mps: horizontal speed by its newest displacement.
@@ -46,6 +56,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         raw: its unit reports raw samples, which are navigated here.
         level: its unit has never reported a change of height.
         unseen_up_m2: variance of its height by the stairs that such a unit does not see.
+        climbs: distances have told that its bearer has climbed unseen by it.
         turned: its unit's frame may be turned by any angle: every window is tried with several.
         bias_told: what readings say of its unit's gyro bias without its prior.
         otherwise: where it may be instead, by what readings tell as well.
@@ -76,10 +87,17 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     raw: bool = False
     level: bool = True
     unseen_up_m2: float = 0.0
+    climbs: bool = False
     walk_factors: tuple[float, float] = (1.0, 1.0)
     turned: bool = False
     bias_told: Told = UNTOLD
     otherwise: tuple[Otherwise, ...] = ()
+    device: str | None = None
+    changed: tuple[float, float | None] | None = None
+    frame_rad: float = 0.0
+    rival: Rival | None = None
+    apart: Apart | None = None
+    joined_t: float = -math.inf
 
     @property
     def position(self) -> Variable:
@@ -103,7 +121,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
 
     @property
     def doubt_up_m2(self) -> float:
-        """What its height is doubted by beside the Kirchhoff matrix: where nothing tells heights (m²)."""
+        """The least that its height is unsure by, where nothing tells it: stairs unseen (m²)."""
         return 0.0 if self.heights else self.unseen_up_m2
 
     @property

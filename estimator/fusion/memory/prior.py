@@ -10,10 +10,10 @@ from estimator.graph.dense import Array
 
 Key = tuple[str, int]
 """A block: ("walk", node number) with a PDR unit's errors, ("free", node number) with a velocity, ("stand",
-node number), ("range" or "rssi", number of the technology)."""
+node number), ("range", "rssi" or "altimeter", number of the technology)."""
 
 PLACED = ("walk", "free", "stand")
-SIZES: Mapping[str, int] = {"walk": 6, "free": 6, "stand": 3, "range": 2, "rssi": 2}
+SIZES: Mapping[str, int] = {"walk": 6, "free": 6, "stand": 3, "range": 2, "rssi": 2, "altimeter": 1}
 """How many numbers each kind of block has."""
 
 

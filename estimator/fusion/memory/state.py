@@ -9,6 +9,7 @@ import numpy as np
 from estimator.estimate import Notice, NoticeCode, Vector3
 from estimator.fusion import physics
 from estimator.fusion.learned.calibration import Calibration, narrow_sigma, scale_sigma
+from estimator.fusion.learned.delays import Radio
 from estimator.fusion.learned.gyros import bias_sigma_radps
 from estimator.fusion.learned.links import Links
 from estimator.fusion.learned.noise import LearnedNoise
@@ -47,6 +48,8 @@ class FusionState:
         tried: how many sightings an undecided node had when it was last tried.
         newest_t: end of the newest tick, Unix seconds.
         bent_m: how far updates have bent the window since it was last solved (m).
+        level_cost: what a reading has cost at least since it was last asked in vain whether anybody has
+            climbed unseen (log likelihood).
         due: the window is to be solved again at once.
         suspected: the window is to be solved again soon: the newest readings disagree with a standing node's
             place, or what was just found has bent what follows.
@@ -58,11 +61,16 @@ class FusionState:
         prior: what is known from before the window.
         navigations: of the boots whose units report raw samples, by node.
         calibrations: what is thought of the scale of each ranging technology that reaches odometry.
+        delayed: the radios whose antenna delay is not calibrated.
+        delays_t: when that was asked last (s).
+        altimeters: standard deviations of what they are off by beforehand, by their names (m).
+        clocks: how late ranges of radios are stamped against their bearers' steps, by node (s).
         reach: how far radios reach.
         listeners: what each radio has been hearing.
         ledger: what has been fused, as tables.
         owners: the node of each number in the ledger.
         sources: the technologies of the ledger's readings.
+        announced: who puts on another unit in this tick, and when (s).
         notices: of this tick.
     """
 
@@ -82,6 +90,7 @@ class FusionState:
         self.tried: dict[str, int] = {}
         self.newest_t = 0.0
         self.bent_m = 0.0
+        self.level_cost = -math.inf
         self.due = False
         self.suspected = False
         self.exposed = True
@@ -91,11 +100,16 @@ class FusionState:
         self.prior: Prior | None = None
         self.navigations: dict[str, Navigation] = {}
         self.calibrations: dict[str, Calibration] = {}
+        self.delayed: dict[Radio, None] = {}
+        self.delays_t = -math.inf
+        self.altimeters: dict[str, float] = {}
+        self.clocks: dict[str, float] = {}
         self.reach = Reach()
         self.listeners: dict[str, Listener] = {}
         self.ledger = Ledger()
         self.owners: tuple[str, ...] = ()
         self.sources: tuple[str, ...] = ()
+        self.announced: dict[str, float] = {}
         self.notices: list[Notice] = []
 
     def copy(self) -> Self:
@@ -108,6 +122,8 @@ class FusionState:
         twin.counts, twin.said, twin.tried = dict(self.counts), dict(self.said), dict(self.tried)
         twin.ended, twin.called, twin.listeners = dict(self.ended), dict(self.called), dict(self.listeners)
         twin.navigations, twin.notices = dict(self.navigations), []
+        twin.delayed, twin.altimeters = dict(self.delayed), dict(self.altimeters)
+        twin.clocks = dict(self.clocks)
         return twin
 
     def count(self, what: Count, number: int = 1) -> None:
@@ -144,6 +160,16 @@ class FusionState:
             self.ended[life.index] = life
         else:
             self.nodes[life.node] = life
+
+    def keep_poses(self) -> None:
+        """Take down where everyone who moves is now: the next solution of the window starts from there."""
+        reference, starts = self.graph.reference.tolist(), self.graph.starts
+        for node in self.nodes.values():
+            if node.moving:
+                unit = node.mode == "unit"
+                here, rest = starts[node.position], starts[node.unit if unit else node.velocity]
+                values = (*reference[here : here + 3], *reference[rest : rest + 3])
+                self.ledger.add("poses", node.pose_t, node.index, float(unit), *values)
 
     def number(self, name: str) -> int:
         """A new number in the ledger for a node, which enters or lies elsewhere now."""

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 from msgspec.structs import replace
-from numba import njit
 
 from estimator.fusion import physics
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import LONGEST_S
 from estimator.graph.dense import Array
+from estimator.graph.forgotten import ornstein_uhlenbeck
 
 LONGEST_STEP = 3.0
 """Memories of a velocity that are carried in one step: its Jacobian's inverse grows as their exponential."""
@@ -65,22 +65,3 @@ def free_motion(role: str, duration_s: float) -> tuple[Array, Array]:
     The velocity is an Ornstein-Uhlenbeck process: v' = v e^(−Δt/τ) + w with the role's usual speed.
     """
     return ornstein_uhlenbeck(physics.SPEED_MEMORY_S[role], *physics.SPEED_SIGMA_MPS[role], duration_s)
-
-
-@njit(cache=True)
-def ornstein_uhlenbeck(
-    memory_s: float, across_mps: float, upwards_mps: float, duration_s: float
-) -> tuple[Array, Array]:
-    """Transition and noise of position and velocity, 6 × 6 each, where a usual speed is forgotten."""
-    x = duration_s / memory_s
-    kept, lost = np.exp(-x), -np.expm1(-x)
-    both_lost = -np.expm1(-2.0 * x)
-    position = 2.0 * x - 4.0 * lost + both_lost if x > 1e-2 else 2.0 / 3.0 * x**3
-    transition, noise = np.eye(6), np.zeros((6, 6))
-    for axis in range(3):
-        speed = across_mps if axis < 2 else upwards_mps
-        transition[axis, axis + 3], transition[axis + 3, axis + 3] = memory_s * lost, kept
-        noise[axis, axis] = (speed * memory_s) ** 2 * position + 1e-6
-        noise[axis, axis + 3] = noise[axis + 3, axis] = speed**2 * memory_s * lost**2
-        noise[axis + 3, axis + 3] = speed**2 * both_lost + 1e-6
-    return transition, noise

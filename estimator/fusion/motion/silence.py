@@ -43,6 +43,26 @@ def unheard_m2(span_s: float, since_s: float) -> float:
 
 
 @njit(cache=True)
+def went_on(since_s: float) -> tuple[float, float]:
+    """How far somebody whose unit has just told his velocity goes on, and the variance about that.
+
+    He goes on as he went, which is forgotten as in `unheard_m2`: the same process, of which a beginning is
+    known (Ornstein and Uhlenbeck 1930).
+
+    Args:
+        since_s: time since then (s).
+
+    Returns:
+        The time in which he would go as far at that velocity (s); the variance along each axis (m²).
+    """
+    speed_mps, memory_s = physics.SILENT_SPEED_MPS, physics.UNHEARD_MEMORY_S
+    span = min(max(since_s, 0.0), LONGEST_S)
+    forgotten = -math.expm1(-span / memory_s)
+    variance = (speed_mps * memory_s) ** 2 * (2.0 * span / memory_s - 2.0 * forgotten - forgotten**2)
+    return memory_s * forgotten, max(variance, LEAST_M2)
+
+
+@njit(cache=True)
 def gone_m2(speed_mps: float, memory_s: float, span_s: float, since_s: float) -> float:
     """The same of any usual speed along an axis, and any time in which it is forgotten (m²)."""
     span = min(max(span_s, 0.0), LONGEST_S)

@@ -9,13 +9,15 @@ from estimator.estimate import Vector3
 from estimator.fusion import physics
 from estimator.fusion.learned.standing import stand_on
 from estimator.fusion.memory.nodes import NodeState
-from estimator.fusion.motion.silence import LONGEST_S
+from estimator.fusion.motion.silence import LONGEST_S, went_on
 from estimator.fusion.motion.way import Mark
-from estimator.inertial.navigation import Led
+from estimator.inertial.led import Led
 from estimator.inertial.strapdown import RATE_WALK
 from estimator.measurements.displacement import Displacement
 
 TRAIL_S = 4.0
+STRIDE_S = 1.0
+"""Over so long at least a velocity is meant: a boot stands for half of each stride."""
 FIRST_DURATION_S = 1.0
 WALK_M2_PER_M, STAND_M2_PER_S = physics.WALK_M_PER_ROOT_M**2, physics.STAND_M_PER_ROOT_S**2
 FLOOR_M2, CLIMB_M2_PER_M = physics.DISPLACEMENT_FLOOR_M**2, physics.CLIMB_M_PER_ROOT_M**2
@@ -130,21 +132,48 @@ class Step:
         before_e, before_n, before_u = self.delta_m
         self.delta_m = before_e + e, before_n + n, before_u + u
         self.duration_s += duration
-        self.noise = sum_of(self.noise, noise)
+        self.noise = sum_of(self.noise, self._as_learned(noise, reading))
         return Increment(pose_t, (e, n, u), noise, turn, too_fast)
+
+    def go_on(self, t: float) -> None:
+        """Let the bearer go on as he went, up to an epoch `t` (s) that no displacement has covered yet."""
+        last_t, *last = self._marks[-1]
+        before_t, *before = next(
+            (m for m in self._marks[-2::-1] if m[0] <= last_t - STRIDE_S), self._marks[0]
+        )
+        along_s, across_m2 = went_on(t - self._pose_t)
+        share = along_s / (last_t - before_t) if last_t > before_t else 0.0
+        e, n, u = (share * (two - one) for one, two in zip(before, last, strict=True))
+        self.delta_m, self.duration_s = (e, n, u), t - self._pose_t
+        self.noise = across_m2, across_m2, 0.1 * across_m2, 0.0, 0.0, 0.0
+        self._marks.append((t, last[0] + e, last[1] + n, last[2] + u))
+        self._pose_t, self.taken = t, True
+
+    def _as_learned(self, noise: Noise, reading: Displacement) -> Noise:
+        """Variances between two solutions of the window: of a worse unit than assumed, as it has shown.
+
+        Of a better one the assumed ones are kept: little is to be gained until the next solution.
+        """
+        by_place, by_turn = self.node.walk_factors
+        if by_place <= 1.0 and by_turn <= 1.0:
+            return noise
+        e, n, u, psi, beta, scale = noise
+        across = max(by_place, 1.0) if reading.sigma_m is None else 1.0
+        return e * across, n * across, u, psi * max(by_turn, 1.0), beta, scale
 
     def _climb_m2(self, reading: Displacement, length: float) -> float:
         """What a displacement's height is unsure by because its unit measures none (m²).
 
-        Where nothing else tells heights, the Kirchhoff matrix keeps to the plane, for the unit may yet show
-        that it measures them; what it may have missed is told beside (estimation.md, point 8).
+        Where nothing else tells heights, the Kirchhoff matrix keeps to the plane until distances contradict
+        it, for the unit may yet show that it measures them; what it may have missed is told beside
+        (estimation.md, point 8).
         """
         if reading.delta_m[2] != 0.0 or isinstance(reading, Led):
             self._level, self._unseen_up_m2 = False, 0.0
-        if self._level:
-            self._unseen_up_m2 += CLIMB_M2_PER_M * length
+        climbed_m2 = CLIMB_M2_PER_M * length if self._level else 0.0
+        self._unseen_up_m2 += climbed_m2
         if not self.node.heights:
-            return 0.0
+            return climbed_m2 if self.node.climbs else 0.0
         climb_m2, self._unseen_up_m2 = self._unseen_up_m2, 0.0
         return climb_m2
 
@@ -179,7 +208,7 @@ class Step:
             node,
             t=max(node.t, t),
             pose_t=t,
-            unit_t=t,
+            unit_t=self._unit_t,
             unit_heading_rad=self._heading_rad,
             speed_mps=self._speed_mps,
             trail=tuple(marks[max(oldest - 1, 0) :]),

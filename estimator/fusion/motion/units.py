@@ -12,6 +12,7 @@ from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import SILENT_S, unheard_m2
 from estimator.fusion.motion.steps import Step, sum_of
 from estimator.graph.dense import Array, Indices
+from estimator.graph.filter_kernels import advance
 from estimator.measurements.displacement import move
 
 FLOOR = (1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12)
@@ -19,12 +20,43 @@ FLOOR = (1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12)
 
 def advance_units(state: FusionState, steps: Sequence[Step]) -> None:
     """One transition for all units that have moved in a tick, by what their displacements add up to."""
-    starts = state.graph.starts
+    graph, starts = state.graph, state.graph.starts
     told = [
         (starts[s.node.position], starts[s.node.unit], *s.delta_m, s.duration_s, *sum_of(s.noise, FLOOR))
         for s in steps
     ]
-    state.graph.advance(*walked(np.array(told), state.graph.reference))
+    rows = np.empty(6 * len(told), dtype=np.intp)
+    kernel = np.empty((len(rows), len(rows)))
+    if not walk(np.array(told), *graph.storage(), graph.size, rows, kernel):
+        graph.loosen(rows, kernel)
+
+
+@njit(cache=True, nogil=True)
+def walk(
+    steps: Array, matrix: Array, vector: Array, reference: Array, n: int, rows: Indices, kernel: Array
+) -> bool:
+    """Steps of units as one transition of the Kirchhoff state, see `Kirchhoff.advance`.
+
+    Args:
+        steps: as `walked` takes them, g × 12.
+        matrix: L, n × n or larger, changed.
+        vector: b, as long, changed.
+        reference: x, as long, changed.
+        n: rows in use.
+        rows: takes the rows that move, 6 g.
+        kernel: takes Q⁻¹ + Eᵀ A E, 6 g × 6 g.
+
+    Returns:
+        False where that is not positive definite: `Kirchhoff.loosen` is still to be done.
+    """
+    blocks, moved, transition, noise = walked(steps, reference[:n])
+    done, found = advance(matrix, vector, n, blocks, transition, noise)
+    kernel[:] = found
+    for i in range(len(blocks)):
+        for c in range(6):
+            rows[6 * i + c] = blocks[i, c]
+            reference[blocks[i, c]] = moved[i, c]
+    return done
 
 
 @njit(cache=True)
@@ -44,6 +76,30 @@ def walked(steps: Array, x: Array) -> tuple[Indices, Array, Array, Array]:
             states[i, c], noise[i, c, c] = x[rows[i, c]], steps[i, 6 + c]
     moved = move(states, steps[:, 2:5], steps[:, 5])
     return rows, moved.state, moved.transition, noise
+
+
+def go_on(state: FusionState, until: Mapping[str, float]) -> None:
+    """Let bearers go on as they went, up to epochs that their units' displacements do not cover yet.
+
+    Of who has been silent nobody knows how he goes: he is left to `drift_units`.
+
+    Args:
+        state: the fusion.
+        until: the epoch, by node.
+    """
+    steps = []
+    for name, t in until.items():
+        node = state.nodes[name]
+        if node.mode != "unit" or node.pose_t != node.unit_t or len(node.trail) < 2:
+            continue
+        if node.pose_t < t <= node.pose_t + SILENT_S:
+            step = Step(node)
+            step.go_on(t)
+            steps.append(step)
+    if steps:
+        advance_units(state, steps)
+    for step in steps:
+        state.nodes[step.node.node] = step.after()
 
 
 def was_silent(node: NodeState) -> bool:

@@ -4,7 +4,9 @@ import numpy as np
 
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.readings.displacements import set_aside
-from estimator.inertial.navigation import Led, navigate
+from estimator.inertial.clipping import remark
+from estimator.inertial.led import Led
+from estimator.inertial.navigation import navigate
 from estimator.inertial.samples import Samples
 from estimator.measurements.node import MOVING_ROLES
 
@@ -22,7 +24,7 @@ def displacements_of(state: FusionState, piece: Samples) -> list[Led]:
         state.say("conflict", piece.t, node.node, text, once=f"imu of {node.node}")
         state.count("not_fused", int(piece.last))
         return []
-    if node.mode == "unit" and not node.raw:
+    if node.mode == "unit" and not node.raw and node.changed is None:
         set_aside(state, node.node, piece.t)
         state.count("not_fused", int(piece.last))
         return []
@@ -34,6 +36,10 @@ def displacements_of(state: FusionState, piece: Samples) -> list[Led]:
         state.say(
             "not_fused", piece.t, node.node, f"{node.node}: {done.text}", once=f"{node.node} {done.text}"
         )
+    of_clock, of_range = done.navigation.clock.remark, remark(done.navigation.boot.clipped)
+    for what, said in (("clock", of_clock), ("range", of_range)):
+        if said is not None:
+            state.say("conflict", piece.t, node.node, f"{node.node}: {said}", once=f"{what} of {node.node}")
     state.count("fused" if done.taken else "not_fused", int(piece.last))
     return done.displacements
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numba import njit
 
 from estimator.fusion.entering.technologies import REACH, path_loss_variable
 from estimator.fusion.learned import reach
@@ -12,9 +13,9 @@ from estimator.fusion.memory.hearing import Crossing, Listener, listen
 from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.order import tick_of
-from estimator.fusion.rows.descent import Found
+from estimator.fusion.rows.descent import GOOD, PREDICTED, RESIDUAL
 from estimator.fusion.rows.rows import EXTRA, KIND, LINK, SIGMA
-from estimator.graph.dense import Array
+from estimator.graph.dense import Array, Indices
 from estimator.measurements.rssi import Rssi
 
 TELLING = ("unit", "static", "fixed")
@@ -56,29 +57,41 @@ def _tells(state: FusionState, crossing: Crossing) -> bool:
     return len(modes) == 2 and "unit" in modes and all(mode in TELLING for mode in modes)
 
 
-def learn_reach(state: FusionState, table: Array, found: Found) -> None:
+def learn_reach(state: FusionState, table: Array, told: Array) -> None:
     """What crossings tell of by how much reaches differ.
 
     Args:
         state: the fusion, whose `reach` is changed.
         table: of m readings, see `rows.Row`.
-        found: what they have led to.
+        told: what has come of them, m × 3, see `descent.RESIDUAL`.
     """
     start = state.graph.starts.get(path_loss_variable(REACH))
     if start is None:
         return
-    # Through a floor one tells nothing of it: it has no link there.
-    crossed = (table[:, KIND] == RSSI) & (table[:, EXTRA] == start) & (table[:, LINK] >= 0.0)
-    if not crossed.any():
+    crossed = crossings_in(table, start).tolist()
+    if not crossed:
         return
-    for r in np.flatnonzero(crossed).tolist():
+    for r in crossed:
         # What was crossed at the same place just before tells nothing new of how reaches differ.
         if state.links.table[int(table[r, LINK]), KEPT] < SAME_PLACE:
-            predicted, variance = float(found.predicted[r]), float(table[r, SIGMA]) ** 2
+            predicted, variance = float(told[r, PREDICTED]), float(table[r, SIGMA]) ** 2
             # What it was off by before it was followed, as far as it was believed.
-            off_db = float(found.residual[r]) * (1.0 + float(found.good[r]) * predicted / variance)
+            off_db = float(told[r, RESIDUAL]) * (1.0 + float(told[r, GOOD]) * predicted / variance)
             state.reach = state.reach.with_crossing(off_db, predicted)
     _note(state)
+
+
+@njit(cache=True)
+def crossings_in(table: Array, start: int) -> Indices:
+    """Which of m readings are crossings of reaches.
+
+    Through a floor one tells nothing of them: it has no link there.
+
+    Args:
+        table: the readings, see `rows.Row`.
+        start: first row of the reaches' states.
+    """
+    return np.flatnonzero((table[:, KIND] == RSSI) & (table[:, EXTRA] == start) & (table[:, LINK] >= 0.0))
 
 
 def _note(state: FusionState) -> None:

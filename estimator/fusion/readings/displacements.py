@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from estimator.fusion import physics
+from estimator.fusion.entering.changed import begin_frame, framed
 from estimator.fusion.entering.introduce import attach_unit, begin_at_base, waits_for_ranges
 from estimator.fusion.memory.ledger import GYRO_BIAS
 from estimator.fusion.memory.state import Count, FusionState
@@ -11,7 +12,7 @@ from estimator.fusion.motion.steps import Step, start_of
 from estimator.fusion.motion.units import advance_units
 from estimator.fusion.physics import NOISES
 from estimator.fusion.rows.rows import Single
-from estimator.inertial.navigation import Led
+from estimator.inertial.led import Led
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import MOVING_ROLES
 
@@ -26,6 +27,7 @@ def move_units(state: FusionState, readings: Sequence[Displacement], turns: list
     """
     steps: dict[str, Step] = {}
     for reading in readings:
+        begin_frame(state, reading)
         step = steps.get(reading.node) or _begin(state, reading)
         if step is None:
             _count(state, reading, "not_fused")
@@ -34,7 +36,7 @@ def move_units(state: FusionState, readings: Sequence[Displacement], turns: list
         if step.node.raw != isinstance(reading, Led):
             set_aside(state, reading.node, reading.t)
             _count(state, reading, "not_fused")
-        elif _extend(state, step, reading, turns):
+        elif _extend(state, step, framed(step.node, reading), turns):
             _count(state, reading, "fused")
     moving = [step for step in steps.values() if step.taken]
     if moving:
@@ -108,7 +110,7 @@ def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[S
     if increment.turn is not None:
         told, noise = increment.turn, physics.TURN_NOISE
         state.ledger.add(
-            "singles", told.t, node.index, GYRO_BIAS, told.value, told.sigma, float(NOISES.index(noise))
+            "singles", told.t, node.index, GYRO_BIAS, told.value, told.sigma, float(NOISES.index(noise)), -1.0
         )
         # The tick moves on first, then takes in what was told before.
         sigma = math.sqrt(told.sigma**2 + told.since)

@@ -11,8 +11,10 @@ from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.swings import unbend
 from estimator.fusion.motion.way import offset_of, turned_m
+from estimator.fusion.readings.altimeters import heard_altimeter
 from estimator.fusion.rows.rows import Single
 from estimator.graph.robust import Mixture
+from estimator.graph.variable import Variable
 from estimator.measurements.altitude import Altitude, Pressure, height_above
 from estimator.measurements.position import Position, east_north_up
 
@@ -82,6 +84,11 @@ def height(state: FusionState, reading: Altitude | Pressure) -> list[Single]:
         state.count("not_fused")
         return []
     sigma, noise = max(sigma, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE
+    node = heard_altimeter(state, node, reading.t, up, sigma)
+    name = node.absolute.zeroed.name
+    if name is None and node.role not in physics.OUTSIDE_ROLES:
+        state.count("not_fused")
+        return []
     if isinstance(reading, Pressure):
         state.nodes[node.node] = replace(node, pressure_t=reading.t)
     else:
@@ -90,9 +97,10 @@ def height(state: FusionState, reading: Altitude | Pressure) -> list[Single]:
         sigma = alike.sigma(sigma, physics.ABSOLUTE_SHARED)
     state.count("fused")
     _tell_heights(state, node.node)
-    _enter_single(state, node, reading.t, 2, up, sigma, noise)
+    _enter_single(state, node, reading.t, 2, up, sigma, noise, name)
     up -= offset_of(state, node, reading.t)[2]
-    return [Single(node.position, 2, up, sigma, noise)]
+    altimeter = None if name is None else Variable("altimeter", name)
+    return [Single(node.position, 2, up, sigma, noise, altimeter)]
 
 
 def _way_m(state: FusionState, node: NodeState, t: float) -> float:
@@ -115,9 +123,17 @@ def _tell_heights(state: FusionState, name: str) -> None:
 
 
 def _enter_single(
-    state: FusionState, node: NodeState, t: float, axis: int, value: float, sigma: float, noise: Mixture
+    state: FusionState,
+    node: NodeState,
+    t: float,
+    axis: int,
+    value: float,
+    sigma: float,
+    noise: Mixture,
+    altimeter: str | None = None,
 ) -> None:
-    state.ledger.add("singles", t, node.index, axis, value, sigma, physics.NOISES.index(noise))
+    source = -1 if altimeter is None else state.source(altimeter)
+    state.ledger.add("singles", t, node.index, axis, value, sigma, physics.NOISES.index(noise), source)
 
 
 def _height(state: FusionState, node: NodeState, reading: Altitude | Pressure) -> tuple[float | None, float]:

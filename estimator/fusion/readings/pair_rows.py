@@ -56,10 +56,12 @@ class PairRows(NamedTuple):
     Attributes:
         entered: rows of the ledger, m × its columns.
         table: those between decided nodes as `rows.Row` has them, those of one kind one after the other.
+        epochs: of these (s).
     """
 
     entered: Array
     table: Array
+    epochs: Array
 
 
 @njit(cache=True, error_model="numpy")
@@ -78,7 +80,7 @@ def pair_rows(
     """
     m = len(pairs)
     entered, table, held = np.empty((m, WIDTH)), np.empty((m, rows.FIELDS)), np.empty(m, dtype=np.bool_)
-    first = np.zeros(BEARING + 2, dtype=np.intp)
+    first, epochs = np.zeros(BEARING + 2, dtype=np.intp), np.empty(m)
     for r in range(m):
         a, b = ends[int(pairs[r, A])], ends[int(pairs[r, B])]
         held[r] = a[way.DECIDED] != 0.0 and b[way.DECIDED] != 0.0
@@ -102,12 +104,13 @@ def pair_rows(
         told[7], told[8], told[9], told[10] = pair[CONSTANT], alike, pair[LINK], echo_m
         if held[r]:
             kind = kind_of(technology)
+            epochs[first[kind]] = pair[T]
             fill(table[first[kind]], pair, technology, a, b, alike, marks, x)
             if echo_m > 0.0:
                 row = table[first[kind]]
                 row[rows.OUTLIERS], row[rows.SHIFT], row[rows.SPREAD] = echoes.noise(echo_m, alike)
             first[kind] += 1
-    return PairRows(entered, table[: first[BEARING]])
+    return PairRows(entered, table[: first[BEARING]], epochs[: first[BEARING]])
 
 
 @njit(cache=True, error_model="numpy")

@@ -15,6 +15,7 @@ from estimator.fusion.entering.technologies import (
 )
 from estimator.fusion.learned import reach
 from estimator.fusion.learned.calibration import Calibration
+from estimator.fusion.learned.delays import source_of
 from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.fusion.memory.nodes import NodeState
@@ -55,6 +56,7 @@ class Pairs:
 
     Attributes:
         fused_t: epoch of the newest reading that is held against each node's place (s).
+        epochs: of the rows that were made (s).
     """
 
     def __init__(self, state: FusionState) -> None:
@@ -67,6 +69,7 @@ class Pairs:
         self._held: dict[str, int] = {}
         self._sighted: dict[str, int] = {}
         self.fused_t: dict[str, float] = {}
+        self.epochs: Array = np.zeros(0)
 
     def take(self, readings: Sequence[AnyPair]) -> None:
         """Take readings in, in order of epoch."""
@@ -94,6 +97,8 @@ class Pairs:
                 kind, source, value = RANGE, reading.technology or "unnamed", reading.range_m
                 usual = physics.RANGE_SIGMA_M.get(source, physics.RANGE_SIGMA_OTHER_M)
                 sigma = max(reading.sigma_m or usual, physics.SIGMA_FLOOR_M)
+                if state.delayed:
+                    source = source_of(source, name_a, name_b, state.delayed)
             else:
                 if self._bear(a, b, reading):
                     fused += 1
@@ -129,6 +134,7 @@ class Pairs:
             state.graph.reference,
         )
         state.ledger.extend("pairs", made.entered)
+        self.epochs = made.epochs
         return made.table
 
     def _name(self, name: str, t: float) -> Named:
@@ -157,7 +163,7 @@ class Pairs:
 
     def _technology(self, kind: int, source: str, between: bool) -> int:
         state, start = self._state, -1
-        learned, usual = state.learned(source), physics.NOISES[kind]
+        usual = physics.NOISES[kind]
         if between:
             states = technology_states(state, source) if kind == RANGE else path_loss_states(state, source)
             start = state.graph.starts[states]
@@ -165,9 +171,7 @@ class Pairs:
             kind,
             state.source(source),
             start,
-            learned.factor,
-            learned.shared,
-            learned.outliers(usual.outliers),
+            *state.learned(source).terms(usual.outliers),
             usual.shift,
             usual.spread,
         )

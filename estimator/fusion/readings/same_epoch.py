@@ -7,7 +7,7 @@ from itertools import groupby
 from msgspec.structs import replace
 
 from estimator.fusion.memory.state import FusionState
-from estimator.inertial.navigation import Led
+from estimator.inertial.led import Led
 from estimator.measurements.displacement import Displacement
 
 COPY = 1e-6
@@ -30,6 +30,8 @@ def joined(state: FusionState, readings: Sequence[Displacement]) -> list[Displac
     Returns:
         One of each unit and epoch, in order of epoch.
     """
+    if len(readings) < 2:
+        return list(readings)
     ordered = sorted(readings, key=_whose)
     found = []
     for _, same in groupby(ordered, key=_whose):

@@ -20,6 +20,8 @@ HALVINGS = 4
 SETTLED = 0.2
 """Share of its variance by which a reading's noise changes at most where it is said to rest."""
 SOLVED, UNSOLVABLE, INDEFINITE = range(3)
+RESIDUAL, PREDICTED, GOOD = range(3)
+"""Columns of what is told of each reading once it has been solved, see `Found`."""
 
 
 class Found(NamedTuple):
@@ -45,7 +47,7 @@ class Found(NamedTuple):
     doubted: bool
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", nogil=True)
 def descend(table: Array, prior: Array, pull: Array, start: Array, iterations: int) -> Found:
     """Add readings to a Kirchhoff state (operation 1 of paper A, eq. 18) and solve it (eq. 4).
 

@@ -30,6 +30,7 @@ class Single(NamedTuple):
         value: what was read.
         sigma: its standard deviation.
         noise: its outliers.
+        altimeter: what the altimeter that has read it is off by; None: none has.
     """
 
     variable: Variable
@@ -37,6 +38,7 @@ class Single(NamedTuple):
     value: float
     sigma: float
     noise: Mixture
+    altimeter: Variable | None = None
 
 
 class Row(NamedTuple):
@@ -102,7 +104,18 @@ def table_of(starts: Mapping[Variable, int], singles: Sequence[Single], pairs: A
     """
     if not singles:
         return pairs
-    rows = [Row(ONE, starts[s.variable] + s.axis, s.value, s.sigma, *s.noise, s.sigma) for s in singles]
+    rows = [
+        Row(
+            ONE,
+            starts[s.variable] + s.axis,
+            s.value,
+            s.sigma,
+            *s.noise,
+            s.sigma,
+            extra=-1 if s.altimeter is None else starts[s.altimeter],
+        )
+        for s in singles
+    ]
     return np.concatenate([table_from(rows), pairs])
 
 
@@ -119,7 +132,7 @@ def columns_of(table: Array) -> Indices:
     columns = np.full((m, WIDTH), -1)
     for r in range(m):
         if table[r, KIND] == ONE:
-            columns[r, 0] = int(table[r, A])
+            columns[r, 0], columns[r, 6] = int(table[r, A]), int(table[r, EXTRA])
             continue
         for at, field, length in ((0, A, 3), (3, B, 3), (6, EXTRA, 2)):
             start = int(table[r, field])
@@ -152,6 +165,7 @@ def linearise(table: Array, columns: Indices, x: Array, jacobian: Array, residua
         states[0, r] = table[r, CONSTANT]
         if columns[r, 6] >= 0:
             states[0, r] += x[columns[r, 6]]
+        if columns[r, 7] >= 0:
             states[1, r] = x[columns[r, 7]]
     first = 0
     while first < m:
@@ -162,7 +176,9 @@ def linearise(table: Array, columns: Indices, x: Array, jacobian: Array, residua
         if kind == ONE:
             jacobian[first:last] = 0.0
             jacobian[first:last, 0] = 1.0
-            residual[first:last] = table[first:last, VALUE] - own[:, 0]
+            for r in range(first, last):
+                jacobian[r, 6] = 1.0 if columns[r, 6] >= 0 else 0.0
+            residual[first:last] = table[first:last, VALUE] - own[:, 0] - one
         else:
             if kind == RANGE:
                 got = predict_range(own, others, one, two)

@@ -154,6 +154,22 @@ class Chain:
             found[:, strand.group.columns] = y
         return found, fixed
 
+    def explained(self, right: Array, corner: Array) -> Array:
+        """Rᵀ L⁻¹ R of right sides R, c × c, after `reduce`: what the unknowns take up of new ones.
+
+        Args:
+            right: of the keyframes, k × n × c.
+            corner: of the border, s × c.
+        """
+        rest, found = corner.copy(), np.zeros((corner.shape[1], corner.shape[1]))
+        for strand in self.strands:
+            y, own = right[:, strand.group.columns], np.zeros((len(strand.group.lasting), corner.shape[1]))
+            strand.forth(y, own)
+            rest[strand.group.lasting] += own
+            flat = y.reshape(-1, corner.shape[1])
+            found += flat.T @ flat
+        return np.asarray(found + rest.T @ solve(self._cholesky, rest))
+
     def covariances(self) -> tuple[Array, Array, Array]:
         """After `reduce` or `solve`: covariances of the walks and of the border.
 

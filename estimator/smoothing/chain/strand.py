@@ -7,7 +7,7 @@ Kirchhoff matrix of its part of the border. Cost grows with the length of the ch
 import numpy as np
 
 from estimator.graph.dense import Array, mended
-from estimator.graph.kernels import Integers, eliminate, selected_inverse, substitute, take_off
+from estimator.graph.kernels import Integers, carry, eliminate, selected_inverse, substitute, take_off
 from estimator.graph.scatter import scatter_rows
 from estimator.smoothing.chain.groups import Group, Placed
 
@@ -104,14 +104,8 @@ class Strand:
 
     def forth(self, y: Array, rest: Array) -> None:
         """Carry right sides to its end: `y` of the keyframes, k × n × c, and `rest` of the border, s × c."""
-        length, width, count = y.shape
-        blocks, size = self.link.shape[1:3]
-        for j in range(length if width else 0):
-            y[j] = self.diagonal[j] @ y[j]
-            rest -= self.border[j].T @ y[j]
-            if j < length - 1:
-                back = (self.diagonal[j].T @ y[j]).reshape(blocks, size, count)
-                y[j + 1] -= (self.link[j] @ back).reshape(width, count)
+        if y.shape[1]:
+            carry(self.diagonal, self.link, self.wide, y, rest)
 
     def back(self, y: Array, fixed: Array) -> None:
         """Answers in the place of what `forth` left in `y`, for those of the border, s × c."""

@@ -72,12 +72,13 @@ def moved_nodes(problem: Problem, solved: Solved, recent_s: float = RECENT_S) ->
     m = len(rows.pairs)
     kinds = rows.pairs[:, 1]
     now = float(problem.layout.grid[-1])
-    residual, sigma = solved.linear.residual[:m], rows.sigma[:m]
-    cost = cauchy_cost(residual / sigma, CAUCHY)
-    usual = costs_of(residual, sigma, rows.noise[:m], kinds == RANGE, rows.alike[:m])
     recent = chosen[(rows.pairs[chosen, 0] > now - recent_s) & (kinds[chosen] <= RSSI)]
     recent = recent[np.argsort(rows.pairs[recent, 0], kind="stable")]
-    measured = set(kinds[recent].tolist())
+    measured = {float(kind) for kind in (RANGE, RSSI) if (kinds[recent] == kind).any()}
+    residual, sigma = solved.linear.residual[recent], rows.sigma[recent]
+    cost, usual = np.empty(m), np.empty(m)
+    cost[recent] = cauchy_cost(residual / sigma, CAUCHY)
+    usual[recent] = costs_of(residual, sigma, rows.noise[recent], kinds[recent] == RANGE, rows.alike[recent])
     found: list[tuple[float, Moved]] = []
     suspected = False
     for node in state.nodes.values():
@@ -155,8 +156,8 @@ def ask(
         pairs: all of them, as rows of the ledger, m × 10.
         number: of the node.
         kind: of those that are asked; −1: all are.
-        usual: what each costs, walls among them, in log likelihood, m.
-        cost: what each costs, m.
+        usual: what each of the recent ones costs, walls among them, in log likelihood, m.
+        cost: what each of them costs, m.
         new_t: epoch since which readings are new (s).
     """
     own, mine, newest = np.empty_like(recent), np.empty_like(recent), np.empty_like(recent)

@@ -10,7 +10,7 @@ from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES, lead
-from estimator.smoothing.keyframes.ways import Laid
+from estimator.smoothing.keyframes.ways import Laid, Ways, lay_out, ways_of
 
 FIXED, STANDING, UNIT, FREE, UNPLACED = range(5)
 
@@ -83,24 +83,20 @@ class Places(NamedTuple):
 
 
 @njit(cache=True)
-def faced(x: Array, ends: Table, others: Table) -> Array:
-    """An estimate's numbers, and of the headings of ends their cosines and sines, × 3.
+def faced(x: Array, headings: Integers) -> Array:
+    """An estimate's numbers, and of its headings the cosines and sines, × 3; of other numbers there are none.
 
     Many readings are made soon after the same keyframe: each angle is asked once.
 
     Args:
         x: the estimate, flat.
-        ends: ends of readings.
-        others: other ones.
+        headings: which of its numbers are headings that ends of readings count from.
     """
-    found = np.full((len(x), 3), np.nan)
+    found = np.empty((len(x), 3))
     for i in range(len(x)):
         found[i, 0] = x[i]
-    for kinds, at in ((ends.kind, ends.at), (others.kind, others.at)):
-        for i in range(len(kinds)):
-            heading = at[i, 3]
-            if kinds[i] == UNIT and np.isnan(found[heading, 1]):
-                found[heading, 1], found[heading, 2] = np.cos(x[heading]), np.sin(x[heading])
+    for heading in headings:
+        found[heading, 1], found[heading, 2] = np.cos(x[heading]), np.sin(x[heading])
     return found
 
 
@@ -138,7 +134,7 @@ def place_end(ends: Table, i: int, x: Array, place: Array, turned: Array) -> Non
 @njit(cache=True)
 def place_ends(ends: Table, x: Array) -> Places:
     """Where m ends are at an estimate x, flat."""
-    m, numbers = len(ends.kind), faced(x, ends, ends)
+    m, numbers = len(ends.kind), faced(x, ends.at[:, 3][ends.kind == UNIT])
     place, turned = np.empty((m, 3)), np.zeros((m, 3, 3))
     for i in range(m):
         place_end(ends, i, numbers, place[i], turned[i])
@@ -146,16 +142,16 @@ def place_ends(ends: Table, x: Array) -> Places:
 
 
 class Stood(NamedTuple):
-    """Between which numbers m ends of readings are; see `Ends`.
+    """Between which numbers of a window m ends of readings are.
 
     Attributes:
         kind: what node each is of, m.
-        slab: keyframe of each, m.
-        columns: its columns, m × 6.
+        slab: keyframe of each, m; 0 where it stands.
+        columns: its columns, m × 6: of the keyframe, or of the border counted after it; −1: none.
         flat: where they are in the flat unknowns, m × 6; 0 where there is none.
         fixed_m: where it is, if it is fixed, m × 3 (m).
         since_t: epoch of its keyframe, if it moves, m (s).
-        usable: m.
+        usable: whether each has a place in the window at its epoch, m.
     """
 
     kind: Integers
@@ -218,7 +214,32 @@ def stand(
     return Stood(kind, slab, columns, flat, fixed, since, usable)
 
 
-class Ends:
+class Ground(NamedTuple):
+    """All that the places of readings in a window follow from.
+
+    Attributes:
+        nodes: what each node of the ledger is.
+        grid: epochs of the keyframes, k (s).
+        times: those of each walk, k × walks (s).
+        spans: first and last keyframe of each walk, walks × 2.
+        ways: of the units.
+    """
+
+    nodes: Nodes
+    grid: Array
+    times: Array
+    spans: Integers
+    ways: Ways
+
+
+def ground_of(layout: Layout) -> Ground:
+    """All that the places of readings in a window follow from."""
+    units = [(walk.number, walk.way) for walk in layout.walks if walk.way is not None]
+    ways = ways_of([number for number, _ in units], [way for _, way in units])
+    return Ground(nodes_of(layout), layout.grid, layout.times, layout.spans, ways)
+
+
+class Ends(NamedTuple):
     """m ends of readings.
 
     Attributes:
@@ -227,60 +248,47 @@ class Ends:
         table: what its place follows from.
     """
 
-    def __init__(
-        self,
-        layout: Layout,
-        numbers: Integers,
-        t: Array,
-        nearest: NDArray[np.bool_],
-        nodes: Nodes | None = None,
-    ) -> None:
-        m, numbers, t = len(numbers), np.ascontiguousarray(numbers), np.ascontiguousarray(t)
-        known = nodes_of(layout) if nodes is None else nodes
-        stood = stand(known, numbers, t, nearest, layout.grid, layout.times, layout.spans)
-        self.stood = stood
-        laid = Laid(np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)))
-        for walk in layout.walks if m else ():
-            if walk.way is not None:
-                walk.way.lay_out(walk.number, numbers, stood.since_t, t, laid)
-        delta_m, moment, self.unsure_m2 = laid
-        self.table = Table(stood.kind, stood.flat, stood.fixed_m, delta_m, moment, t - stood.since_t)
+    stood: Stood
+    unsure_m2: Array
+    table: Table
 
-    @property
-    def slab(self) -> Integers:
-        """Keyframe of each, m; 0 where it stands."""
-        return self.stood.slab
 
-    @property
-    def columns(self) -> Integers:
-        """Its six columns, m × 6: of the keyframe, or of the border counted after it; −1: none."""
-        return self.stood.columns
+@njit(cache=True)
+def ends_of(ground: Ground, numbers: Integers, t: Array, nearest: NDArray[np.bool_]) -> Ends:
+    """Ends of readings in a window.
 
-    @property
-    def usable(self) -> NDArray[np.bool_]:
-        """Whether each has a place in the window at its epoch, m."""
-        return self.stood.usable
+    Args:
+        ground: of the window.
+        numbers: the node of each end, m.
+        t: epochs, m (s).
+        nearest: see `stand`, m.
+    """
+    m, ways = len(numbers), ground.ways
+    stood = stand(ground.nodes, numbers, t, nearest, ground.grid, ground.times, ground.spans)
+    laid = Laid(np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)))
+    for w in range(len(ways.numbers) if m else 0):
+        own = slice(ways.firsts[w], ways.firsts[w + 1])
+        told = ways.begin_t[w], ways.marks[own], ways.sums[own]
+        lay_out(*told, ways.numbers[w], numbers, stood.since_t, t, laid)
+    table = Table(stood.kind, stood.flat, stood.fixed_m, laid.delta_m, laid.moment, t - stood.since_t)
+    return Ends(stood, laid.unsure_m2, table)
 
-    def take(self, chosen: NDArray[np.bool_]) -> None:
-        """Keep only some of the ends.
 
-        Args:
-            chosen: which, m.
-        """
-        if chosen.all():
-            return
-        stood = self.stood
-        self.stood = Stood(
-            stood.kind[chosen],
-            stood.slab[chosen],
-            stood.columns[chosen],
-            stood.flat[chosen],
-            stood.fixed_m[chosen],
-            stood.since_t[chosen],
-            stood.usable[chosen],
-        )
-        kind, at, fixed_m, delta_m, moment, duration_s = self.table
-        self.table = Table(
-            kind[chosen], at[chosen], fixed_m[chosen], delta_m[chosen], moment[chosen], duration_s[chosen]
-        )
-        self.unsure_m2 = self.unsure_m2[chosen]
+@njit(cache=True)
+def taken(ends: Ends, chosen: NDArray[np.bool_]) -> Ends:
+    """Some of m ends.
+
+    Args:
+        ends: all of them.
+        chosen: which, m.
+    """
+    if chosen.all():
+        return ends
+    stood, table = ends.stood, ends.table
+    kind, flat, fixed_m = stood.kind[chosen], stood.flat[chosen], stood.fixed_m[chosen]
+    since_t = stood.since_t[chosen]
+    some = Stood(
+        kind, stood.slab[chosen], stood.columns[chosen], flat, fixed_m, since_t, stood.usable[chosen]
+    )
+    delta_m, moment, duration_s = table.delta_m[chosen], table.moment[chosen], table.duration_s[chosen]
+    return Ends(some, ends.unsure_m2[chosen], Table(kind, flat, fixed_m, delta_m, moment, duration_s))

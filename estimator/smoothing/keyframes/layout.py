@@ -12,8 +12,8 @@ from estimator.fusion.memory.prior import Key, Prior
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
-from estimator.graph.variable import Variable
-from estimator.smoothing.keyframes.walks import STATES
+from estimator.graph.variable import DIMENSION, TECHNOLOGIES, Variable
+from estimator.smoothing.keyframes.walks import HEADING, STATES
 from estimator.smoothing.keyframes.ways import Way
 
 
@@ -106,9 +106,9 @@ class Layout:
                 self.stands[int(row[1])] = start
                 start += 3
         for variable in self.state.graph.starts:
-            if variable.kind in ("range", "rssi"):
+            if variable.kind in TECHNOLOGIES:
                 self.technologies[technology_key(self.state, variable)] = start
-                start += 2
+                start += DIMENSION[variable.kind]
         self.border = start
 
     def part(self, walks: Sequence[int], until: int) -> Self:
@@ -126,6 +126,15 @@ class Layout:
         other.column_of = {walk.number: STATES * i for i, walk in enumerate(some)}
         other.width = STATES * len(some)
         return other
+
+    def headings(self) -> Integers:
+        """Which of the flat unknowns are headings of units, walk after walk."""
+        each = [
+            self.width * np.arange(walk.first, walk.last + 1) + STATES * i + HEADING
+            for i, walk in enumerate(self.walks)
+            if walk.way is not None
+        ]
+        return np.concatenate([np.zeros(0, dtype=np.int64), *each])
 
     @property
     def length(self) -> int:
@@ -157,9 +166,9 @@ class Layout:
             place = self.state.place(node) if current else row[2:5]
             border[self.stands[number] : self.stands[number] + 3] = place
         for variable in self.state.graph.starts:
-            if variable.kind in ("range", "rssi"):
+            if variable.kind in TECHNOLOGIES:
                 at = self.technologies[technology_key(self.state, variable)]
-                border[at : at + 2] = self.state.graph.value(variable)
+                border[at : at + DIMENSION[variable.kind]] = self.state.graph.value(variable)
         return x
 
     def states(self, x: Array, index: int) -> Array:
@@ -175,7 +184,7 @@ def spans_of(walks: Sequence[Walk]) -> Integers:
 
 def technology_key(state: FusionState, variable: Variable) -> Key:
     """The block of a technology's states, by number of its source."""
-    name = variable.owner if variable.kind == "range" else UNTOLD_POWER + variable.owner
+    name = UNTOLD_POWER + variable.owner if variable.kind == "rssi" else variable.owner
     return variable.kind, state.source(name)
 
 

@@ -72,6 +72,11 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
     for key, start in layout.technologies.items():
         if key in known:
             continue
+        if key[0] == "altimeter":
+            at.append(size + start)
+            mean.append(0.0)
+            known_by.append(state.altimeters[state.sources[key[1]]] ** -2)
+            continue
         at += [size + start, size + start + 1]
         if key[0] == "range":
             name = state.sources[key[1]]

@@ -1,5 +1,7 @@
 """Displacements summed up along a unit's way, and what of them lies between any two epochs."""
 
+from collections.abc import Sequence
+from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -37,21 +39,23 @@ class Way:
 
     Attributes:
         begin_t: epoch at which it begins (s).
+        marks: see `summed`.
+        sums: see `summed`.
     """
 
     def __init__(self, begin_t: float, steps: Array, factors: tuple[float, float]) -> None:
         self.begin_t = begin_t
-        self._marks, self._sums = summed(begin_t, steps, *factors)
+        self.marks, self.sums = summed(begin_t, steps, *factors)
 
     def bridged(self, t: Array) -> Array:
         """Variance of where it was at `t`, m (m²), inside a displacement over a long time.
 
         Only its two ends are known: between them the bearer may have walked anywhere, a Brownian bridge.
         """
-        right = np.clip(np.searchsorted(self._marks, t, side="left"), 1, max(len(self._marks) - 1, 1))
-        if len(self._marks) == 1:
+        right = np.clip(np.searchsorted(self.marks, t, side="left"), 1, max(len(self.marks) - 1, 1))
+        if len(self.marks) == 1:
             return np.zeros(len(t))
-        before, after = self._marks[right - 1], self._marks[right]
+        before, after = self.marks[right - 1], self.marks[right]
         span = after - before
         inside = (span > LONG_STEP_S) & (t > before) & (t < after)
         return np.where(
@@ -61,24 +65,45 @@ class Way:
     def between(self, since: Array, until: Array) -> Array:
         """What lies between epochs, m × 12, moments from `since` on; silence adds what it lets wander."""
         since, until = np.ascontiguousarray(since), np.ascontiguousarray(until)
-        return np.asarray(sums_between(self.begin_t, self._marks, self._sums, since, until))
+        return np.asarray(sums_between(self.begin_t, self.marks, self.sums, since, until))
 
     def gone(self, t: Array) -> Array:
         """Share of its whole length that it has gone at `t`, m."""
         begins = np.full(len(t), self.begin_t)
-        return np.asarray(self.between(begins, t)[:, LENGTH] / max(float(self._sums[-1, LENGTH]), 1e-9))
+        return np.asarray(self.between(begins, t)[:, LENGTH] / max(float(self.sums[-1, LENGTH]), 1e-9))
 
-    def lay_out(self, mine: int, numbers: Integers, since: Array, until: Array, to: Laid) -> None:
-        """Put what lies between epochs where it belongs, of those of m ends that are this node's.
 
-        Args:
-            mine: number of the node.
-            numbers: of the node of each end, m.
-            since: epochs of their keyframes, m (s).
-            until: their own epochs, m (s).
-            to: takes it.
-        """
-        lay_out(self.begin_t, self._marks, self._sums, mine, numbers, since, until, to)
+class Ways(NamedTuple):
+    """The ways of w units one behind the other.
+
+    Attributes:
+        numbers: of their nodes, w.
+        begin_t: epochs at which they begin, w (s).
+        firsts: where the marks of each begin, and where the last ones end, w + 1.
+        marks: see `summed`, of all of them.
+        sums: the same.
+    """
+
+    numbers: Integers
+    begin_t: Array
+    firsts: Integers
+    marks: Array
+    sums: Array
+
+
+NO_WAYS = Ways(np.zeros(0, np.int64), np.zeros(0), np.zeros(1, np.int64), np.zeros(0), np.zeros((0, SUMS)))
+
+
+def ways_of(numbers: Sequence[int], ways: Sequence[Way]) -> Ways:
+    """Ways one behind the other, with the numbers of their nodes."""
+    if not ways:
+        return NO_WAYS
+    firsts = np.array([0, *accumulate(len(way.marks) for way in ways)])
+    begin_t = np.array([way.begin_t for way in ways])
+    if len(ways) == 1:
+        return Ways(np.array(numbers), begin_t, firsts, ways[0].marks, ways[0].sums)
+    marks, sums = np.concatenate([way.marks for way in ways]), np.concatenate([way.sums for way in ways])
+    return Ways(np.array(numbers), begin_t, firsts, marks, sums)
 
 
 @njit(cache=True)
@@ -181,15 +206,28 @@ def lay_out(
     until: Array,
     to: Laid,
 ) -> None:
-    """See `Way.lay_out`; the way itself as `sum_between` takes it."""
-    found, before, known_t = np.empty(LAID), np.empty(LAID), np.nan
+    """Put what lies between epochs where it belongs, of those of m ends that are one node's.
+
+    Args:
+        begin_t: epoch at which its way begins (s).
+        marks: see `sum_up_to`.
+        sums: see `sum_up_to`.
+        mine: number of the node.
+        numbers: of the node of each end, m.
+        since: epochs of their keyframes, m (s).
+        until: their own epochs, m (s).
+        to: takes it.
+    """
+    found, before, since_t, until_t = np.empty(LAID), np.empty(LAID), np.nan, np.nan
     for i in range(len(numbers)):
         if numbers[i] != mine:
             continue
-        if since[i] != known_t:  # many ends share a keyframe
+        # Many ends share a keyframe, and those of one sweep their epoch as well.
+        if since[i] != since_t:
             sum_up_to(marks, sums, since[i], before)
-            known_t = since[i]
-        sum_between(begin_t, marks, sums, since[i], until[i], before, found)
+        if since[i] != since_t or until[i] != until_t:
+            since_t, until_t = since[i], until[i]
+            sum_between(begin_t, marks, sums, since_t, until_t, before, found)
         for c in range(3):
             to.delta_m[i, c], to.moment[i, c] = found[c], found[3 + c]
             to.unsure_m2[i, c] = abs(found[6 if c < 2 else 7])

@@ -14,16 +14,20 @@ from estimator.fusion.learned.calibration import Calibration, scale_sigma, told_
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.walks import STATES, Motion
+from estimator.smoothing.learning.delays import doubt_delays
 from estimator.smoothing.learning.slips import Doubts, admit, doubts_of, find_slips
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
 
 SPREAD = 1.0
 """Units differ from the usual one by this much in the logarithm of a variance."""
-STEP = 0.3
+STEP, DOUBTED = 0.3, 3.0
+"""Farthest that the logarithm of a variance moves in one solution; and so many times as far towards more
+noise: while a unit far worse than assumed is trusted, its bearer is led astray."""
 SEEN = 0.03
 """Share of a step's own noise that readings usually tell apart: what a score is held against."""
-LEAST, MOST = 0.03, 20.0
+LEAST, MOST = 0.03, 400.0
+"""The worst unit is off by 0.7 m in each metre: it tells nothing any more."""
 BIAS = 4
 """Which of a state's numbers is the gyro bias."""
 PARTS = 4
@@ -55,6 +59,8 @@ def learn(
         state.due = state.due or bool(slips)
     if kinds:
         calibrate(state, problem, solved.x, border)
+        if solved.rests:
+            doubt_delays(state, problem, solved)
     learn_biases(state, problem, solved.x, found)
     return found
 
@@ -69,7 +75,7 @@ def learn_walks(
         problem: of the window.
         solved: its solution.
         doubts: see `slips.doubts_of`.
-        most: farthest that the logarithm of a variance moves.
+        most: see `STEP`.
     """
     for i, doubt in doubts.items():
         scores = noise_scores(solved.motions[i], doubt).tolist()
@@ -78,7 +84,7 @@ def learn_walks(
         for factor, (score, sure) in zip(node.walk_factors, scores, strict=True):
             off = np.log(factor)
             known = sure * SEEN + abs(score) + 1.0 / SPREAD**2
-            step = min(max(2.0 * (score - off / SPREAD**2) / known, -most), most)
+            step = min(max(2.0 * (score - off / SPREAD**2) / known, -most), DOUBTED * most)
             factors.append(float(min(max(factor * np.exp(step), LEAST), MOST)))
         state.keep(replace(node, walk_factors=(factors[0], factors[1])))
 

@@ -267,10 +267,11 @@ class Problem:
             slack = slacks_m[iteration] if iteration < len(slacks_m) else 0.0
             weighted = self.weigh(linear.residual, slack, doubt if iteration == 0 else None)
             step, promised = self._step(x, linear, weighted, motions, damping, near and slack == 0.0)
-            if not np.abs(x + step).max(initial=0.0) < NOWHERE:
+            led = x + step
+            if not np.abs(led).max(initial=0.0) < NOWHERE:
                 # Readings contradict each other beyond all measure: no step helps.
                 break
-            there = self.at(x + step)
+            there = self.at(led)
             if slack == 0.0 and promised > resting:
                 # The parabola through the cost here, its slope and the cost there: where it is lowest.
                 share = promised / max(2.0 * promised - (cost - there.cost), promised / FARTHEST)

@@ -50,6 +50,7 @@ def arrange(
     drops: Array,
     slab: Integers,
     extra: Integers,
+    off: Integers,
     a: Stood,
     b: Stood,
     on: Stood,
@@ -60,10 +61,11 @@ def arrange(
 
     Args:
         pairs: rows of the ledger, m × 11.
-        singles: the same, n × 6.
+        singles: the same, n × 7.
         drops: the same, d × 3.
         slab: keyframe of each pair, m.
         extra: columns of its technology, m × 2; −1: it has none.
+        off: column of each single's altimeter, n; −1: it has none.
         a: first ends of the pairs.
         b: second ends.
         on: ends of the singles.
@@ -88,6 +90,7 @@ def arrange(
     for k in range(n):
         i, kind = m + k, int(singles[k, 5])
         t[i], found[i], nominal[i] = singles[k, 0], on.slab[k], singles[k, 4]
+        columns[i, 2 * size] = off[k]
         for c in range(size):
             columns[i, c] = on.columns[k, c]
         for c in range(3):

@@ -1,6 +1,6 @@
 """Which readings between nodes have their places in a window."""
 
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,8 +10,6 @@ from estimator.fusion.memory.ledger import RSSI
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.smoothing.keyframes.ends import FREE, UNIT, Stood
-
-Row = TypeVar("Row", bound=np.generic)
 
 
 class Chosen(NamedTuple):
@@ -55,8 +53,3 @@ def choose(pairs: Array, a: Stood, b: Stood, technology: Integers, outside: NDAr
         slab[i] = a.slab[i] if a_moves else b.slab[i]
         inside[i] = kind <= RSSI and not outside[first] and not outside[second]
     return Chosen(chosen, extra, slab, inside)
-
-
-def kept(rows: NDArray[Row], chosen: NDArray[np.bool_]) -> NDArray[Row]:
-    """Some of m rows; the rows themselves where that is all of them."""
-    return rows if chosen.all() else rows[chosen]

@@ -56,7 +56,7 @@ def add_bends(
     width, corners = diagonal.shape[1], corner.reshape(1, *corner.shape)
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
-    numbers = faced(x, ends_a, ends_b)
+    numbers = faced(x, readings.headings)
     for i in chosen:
         kind = kinds[i]
         if kind > RSSI:

@@ -6,13 +6,18 @@ other.
 """
 
 import numpy as np
+from numba import njit
+from numpy.typing import NDArray
 
 from estimator.fusion import physics
 from estimator.graph.dense import Array
-from estimator.graph.kernels import strongest
+from estimator.graph.kernels import Integers
+
+SPAN_S, LEAST = physics.ENCOUNTER_S, physics.ENCOUNTER_READINGS
 
 
-def candidates(t: Array, link: Array, value: Array) -> Array:
+@njit(cache=True)
+def candidates(t: Array, link: Array, value: Array) -> NDArray[np.bool_]:
     """Which readings are the strongest of their link within `physics.ENCOUNTER_S` before and after, m (bool).
 
     Args:
@@ -20,9 +25,58 @@ def candidates(t: Array, link: Array, value: Array) -> Array:
         link: number of the link of each, m.
         value: powers, m (dBm).
     """
-    order = np.lexsort((t, link))
-    found = np.zeros(len(t), dtype=bool)
-    found[order] = strongest(
-        t[order], link[order], value[order], physics.ENCOUNTER_S, physics.ENCOUNTER_READINGS
-    )
+    if (t[:-1] <= t[1:]).all():
+        return strongest(t, link, value, SPAN_S, LEAST)
+    order, found = np.argsort(t, kind="mergesort"), np.zeros(len(t), dtype=np.bool_)
+    found[order] = strongest(t[order], link[order], value[order], SPAN_S, LEAST)
     return found
+
+
+@njit(cache=True)
+def strongest(t: Array, link: Array, value: Array, span: float, least: int) -> NDArray[np.bool_]:
+    """Which values are the largest of their link within `span` before and after, m.
+
+    Args:
+        t: ascending, m.
+        link: number of the link of each, m.
+        value: m.
+        span: in the unit of `t`.
+        least: there must be so many values within the span.
+    """
+    order, found = link_by_link(link), np.zeros(len(t), dtype=np.bool_)
+    for place in range(len(t)):
+        i, best, near = order[place], True, 1
+        for step in (-1, 1):
+            beside = place + step
+            while best and 0 <= beside < len(t):
+                j = order[beside]
+                if link[j] != link[i] or abs(t[j] - t[i]) > span:
+                    break
+                near, best = near + 1, not value[j] > value[i]
+                beside += step
+        found[i] = best and near >= least
+    return found
+
+
+@njit(cache=True)
+def link_by_link(link: Array) -> Integers:
+    """The order that puts readings of one link behind each other, each link's as they were, m.
+
+    Links have small numbers: they are counted, not compared.
+
+    Args:
+        link: number of the link of each, m.
+    """
+    order = np.empty(len(link), dtype=np.int64)
+    if len(link) == 0:
+        return order
+    least = int(link.min())
+    following = np.zeros(int(link.max()) - least + 2, dtype=np.int64)
+    for i in range(len(link)):
+        following[int(link[i]) - least + 1] += 1
+    following = following.cumsum()
+    for i in range(len(link)):
+        own = int(link[i]) - least
+        order[following[own]] = i
+        following[own] += 1
+    return order

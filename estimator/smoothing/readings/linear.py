@@ -14,7 +14,7 @@ from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import bearing_at
 from estimator.measurements.range import range_at
 from estimator.measurements.rssi import rssi_at
-from estimator.smoothing.keyframes.ends import FIXED, UNIT, Table, faced, place_end, place_ends
+from estimator.smoothing.keyframes.ends import FIXED, UNIT, Table, faced, place_end
 
 ANY = 14
 """Numbers that one row depends on at most: two ends of six, two of a technology."""
@@ -32,9 +32,11 @@ class Readings(NamedTuple):
         b: second ends.
         axis: what a single tells of its node: 0 to 2 the place, above it the number itself, n.
         told: what it tells, n.
+        altimeter: where what its altimeter is off by is in the flat unknowns, n; −1: it has none.
         on: ends of the singles.
         by: who dropped, d.
         crumb: what was dropped, d.
+        headings: which of the flat unknowns are headings that ends count from.
     """
 
     kind: Integers
@@ -45,9 +47,11 @@ class Readings(NamedTuple):
     b: Table
     axis: Integers
     told: Array
+    altimeter: Integers
     on: Table
     by: Table
     crumb: Table
+    headings: Integers
 
 
 class Seen(NamedTuple):
@@ -109,7 +113,7 @@ def residuals(readings: Readings, x: Array) -> Array:
     a, b, turned = np.empty(3), np.empty(3), np.zeros((3, 3))
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
-    numbers = faced(x, ends_a, ends_b)
+    numbers = faced(x, readings.headings)
     value, constants = readings.value, readings.constant
     for i in range(m):
         place_end(ends_a, i, numbers, a, turned)
@@ -117,15 +121,19 @@ def residuals(readings: Readings, x: Array) -> Array:
         constant = counted_from(kinds[i], constants[i], ends_a, i, x)
         seen = see(kinds[i], value[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
         found[i] = value[i] - seen.predicted
-    on = place_ends(readings.on, x)
+    on, by, crumb = readings.on, readings.by, readings.crumb
     for i in range(n):
         axis = readings.axis[i]
-        here = on.place[i, axis] if axis < 3 else x[readings.on.at[i, axis]]
+        place_end(on, i, numbers, a, turned)
+        here = a[axis] if axis < 3 else x[on.at[i, axis]]
+        if readings.altimeter[i] >= 0:
+            here += x[readings.altimeter[i]]
         found[m + i] = readings.told[i] - here
-    by, crumb = place_ends(readings.by, x), place_ends(readings.crumb, x)
     for i in range(d):
+        place_end(by, i, numbers, a, turned)
+        place_end(crumb, i, numbers, b, turned)
         for c in range(3):
-            found[m + n + 3 * i + c] = by.place[i, c] - crumb.place[i, c]
+            found[m + n + 3 * i + c] = a[c] - b[c]
     return found
 
 
@@ -137,7 +145,7 @@ def jacobians(readings: Readings, x: Array) -> Array:
     a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
     slope = np.empty(3)
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
-    numbers = faced(x, ends_a, ends_b)
+    numbers = faced(x, readings.headings)
     value, constants = readings.value, readings.constant
     for i in range(m):
         kind = kinds[i]
@@ -156,20 +164,26 @@ def jacobians(readings: Readings, x: Array) -> Array:
             found[i, 12], found[i, 13] = seen.by_first, seen.by_second
         elif kind == BODY_BEARING and ends_a.kind[i] == UNIT:
             found[i, 3] += seen.by_first
-    on = place_ends(readings.on, x)
+    on, by, crumb = readings.on, readings.by, readings.crumb
     for i in range(n):
         row, axis = found[m + i], readings.axis[i]
         row[axis] = 1.0
+        if readings.altimeter[i] >= 0:
+            row[12] = 1.0
         if axis < 3:
-            row[3:6] = on.turned[i, axis]
-    by, crumb = place_ends(readings.by, x), place_ends(readings.crumb, x)
+            by_a[:] = 0.0
+            place_end(on, i, numbers, a, by_a)
+            row[3:6] = by_a[axis]
     for i in range(d):
+        by_a[:], by_b[:] = 0.0, 0.0
+        place_end(by, i, numbers, a, by_a)
+        place_end(crumb, i, numbers, b, by_b)
         for c in range(3):
             row = found[m + n + 3 * i + c]
-            if readings.by.kind[i] != FIXED:
-                row[c], row[3:6] = -1.0, -by.turned[i, c]
-            if readings.crumb.kind[i] != FIXED:
-                row[6 + c], row[9:12] = 1.0, crumb.turned[i, c]
+            if by.kind[i] != FIXED:
+                row[c], row[3:6] = -1.0, -by_a[c]
+            if crumb.kind[i] != FIXED:
+                row[6 + c], row[9:12] = 1.0, by_b[c]
     return found
 
 
@@ -179,7 +193,7 @@ def apart(readings: Readings, x: Array) -> Array:
     m = len(readings.kind)
     found, a, b, turned = np.empty((m, 3)), np.empty(3), np.empty(3), np.zeros((3, 3))
     ends_a, ends_b = readings.a, readings.b
-    numbers = faced(x, ends_a, ends_b)
+    numbers = faced(x, readings.headings)
     for i in range(m):
         place_end(ends_a, i, numbers, a, turned)
         place_end(ends_b, i, numbers, b, turned)
@@ -193,6 +207,7 @@ def stretch(
     readings: Readings,
     x: Array,
     through: NDArray[np.bool_],
+    held: bool,
     strongest: NDArray[np.bool_],
     alike: Array,
     alone: Array,
@@ -203,7 +218,8 @@ def stretch(
     Args:
         readings: of the window.
         x: the estimate, flat.
-        through: which pairs are thought to go through a floor, m.
+        through: which pairs may go through a floor, m.
+        held: they are thought to; else those of them do whose ends are that far apart at the estimate.
         strongest: which are the strongest powers of their links for some time, m.
         alike: which number in its row of alike readings each one is, m at least.
         alone: standard deviation that each would have were there none alike, m at least.
@@ -213,7 +229,7 @@ def stretch(
     value, constants = readings.value, readings.constant
     for i in range(len(kinds)):
         e, n, u = way[i, 0], way[i, 1], way[i, 2]
-        if through[i]:
+        if through[i] and (held or abs(u) > physics.FLOOR_M):
             sigma[i] = through_sigma(sigma[i], kinds[i] != RANGE, alike[i])
         close = strongest[i] and np.sqrt(e * e + n * n + u * u) <= physics.ENCOUNTER_M
         if close and value[i] >= near_dbm(x[extra[i, 0]] + constants[i], x[extra[i, 1]]):

@@ -39,9 +39,11 @@ def partial(
         b=b,
         axis=readings.axis[singles],
         told=readings.told[singles],
+        altimeter=np.where(readings.altimeter[singles] >= 0, numbers.place[readings.altimeter[singles]], -1),
         on=_ends(readings.on, numbers, x, singles),
         by=_ends(readings.by, numbers, x, drops),
         crumb=_ends(readings.crumb, numbers, x, drops),
+        headings=numbers.layout.headings(),
     )
 
 

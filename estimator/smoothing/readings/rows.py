@@ -10,23 +10,22 @@ from numpy.typing import NDArray
 from estimator.fusion import physics
 from estimator.fusion.entering.technologies import UNTOLD_POWER
 from estimator.fusion.learned.noise import LearnedNoise
-from estimator.fusion.memory.ledger import BEARING, ECHO, GYRO_BIAS, RANGE, RSSI
+from estimator.fusion.memory.ledger import BEARING, ECHO, RANGE, RSSI
 from estimator.fusion.readings import echoes
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import wrap
-from estimator.smoothing.keyframes.ends import FREE, UNIT, Ends, nodes_of, place_ends
+from estimator.smoothing.keyframes.ends import FREE, UNIT, ground_of, place_ends
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.numbers import Numbers
-from estimator.smoothing.readings.arranged import NOISES, Arranged, arrange, scattered, sigmas
-from estimator.smoothing.readings.chosen import choose, kept
-from estimator.smoothing.readings.encounters import candidates
+from estimator.smoothing.readings.arranged import NOISES, Arranged, scattered, sigmas
 from estimator.smoothing.readings.linear import Readings, add_unsure, apart, jacobians, residuals, stretch
 from estimator.smoothing.readings.obstructed import excess
 from estimator.smoothing.readings.partial import partial
+from estimator.smoothing.readings.placed import ALTIMETER, Told, placed
 from estimator.smoothing.readings.rarer import once_a_second
 
-PER_ROW = ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike", "turns", "_told", "_alone")
+PER_ROW = ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike", "turns", "told", "_alone")
 """What there is one of for each row."""
 
 
@@ -50,6 +49,7 @@ class Rows:
         slab: keyframe of each row, m.
         columns: what each depends on, m × 14, as `graph.kernels.scatter_rows` takes it.
         sigma: standard deviation of the good noise, m.
+        told: the same by technology and link alone, wherever both ends are, m.
         shift: what they are thought to be too long by, m.
         noise: outliers, shift and spread of each, m × 3.
         nominal: claimed or assumed standard deviation, m.
@@ -65,85 +65,30 @@ class Rows:
     floors: NDArray[np.bool_] | None = None
 
     def __init__(self, layout: Layout, since_t: float) -> None:
-        self._layout, self._nodes = layout, nodes_of(layout)
-        self._pairs(layout, since_t)
-        self._singles(layout, since_t)
-        self._drops(layout, since_t)
-        ends = (end.stood for end in (self._a, self._b, self._on, self._by, self._crumb))
-        rows = arrange(self.pairs, self.singles, self.drops, self._slab, self._extra, *ends)
-        self._rows: Arranged = rows
-        self.t, self.slab, self.columns, self.noise, self.nominal, self.source, self.alike = rows
-        rssi = np.flatnonzero(self.pairs[:, 1] == RSSI)
-        self._strongest = np.zeros(len(self.pairs), dtype=bool)
-        heard = self.pairs[rssi]
-        self._strongest[rssi] = candidates(heard[:, 0], heard[:, 9], heard[:, 4])
-        own = slice(len(self.pairs), len(self.pairs) + len(self.singles))
-        self.turns: NDArray[np.bool_] = np.zeros(len(self.nominal), dtype=bool)
-        self.turns[own] = self.singles[:, 2] == GYRO_BIAS
+        self._layout, ledger = layout, layout.state.ledger
+        told = Told(ledger.table("pairs"), ledger.table("singles"), ledger.table("drops"))
+        nodes = layout.state.nodes
+        outside = [nodes[name].role in physics.OUTSIDE_ROLES for name in layout.state.owners]
+        found = placed(
+            told,
+            since_t,
+            ground_of(layout),
+            technologies_of(layout),
+            np.array(outside, dtype=bool),
+            layout.headings(),
+        )
+        self._rows: Arranged = found.rows
+        self.pairs, self.singles, self.drops = found.told
+        self.t, self.slab, self.columns, self.noise, self.nominal, self.source, self.alike = found.rows
+        self.turns: NDArray[np.bool_] = found.turns
         self.shift: Array = np.zeros(len(self.nominal))
         self.sigma: Array = self.nominal.copy()
-        self._told: Array = self.nominal
+        self.told: Array = self.nominal
         self._alone: Array = self.nominal
         self._usual_noise: Array = self.noise
         self._white, self._common = self.nominal**2, np.zeros(len(self.nominal))
-        self._unsure_m2 = self._a.unsure_m2, self._b.unsure_m2, self._on.unsure_m2, self._by.unsure_m2
-        size = layout.length * layout.width
-        self._bearings = np.flatnonzero(self.pairs[:, 1] >= BEARING)
-        self._readings = Readings(
-            kind=self.pairs[:, 1].astype(np.int64),
-            value=self.pairs[:, 4].copy(),
-            constant=self.pairs[:, 7].copy(),
-            extra=np.where(self._extra >= 0, size + self._extra - layout.width, 0),
-            a=self._a.table,
-            b=self._b.table,
-            axis=self.singles[:, 2].astype(np.int64),
-            told=self.singles[:, 3].copy(),
-            on=self._on.table,
-            by=self._by.table,
-            crumb=self._crumb.table,
-        )
-
-    def _pairs(self, layout: Layout, since_t: float) -> None:
-        pairs = layout.state.ledger.table("pairs")
-        pairs = kept(pairs, pairs[:, 0] >= since_t)
-        numbers = pairs[:, 2:4].astype(np.int64)
-        unitless = self._nodes.kind[numbers] != UNIT
-        nearest = unitless[:, 0] & unitless[:, 1]
-        a, b = (Ends(layout, numbers[:, i], pairs[:, 0], nearest, self._nodes) for i in (0, 1))
-        technology = np.full((BEARING, len(layout.state.sources)), -1, dtype=np.int64)
-        for (kind, source), start in layout.technologies.items():
-            technology[RANGE if kind == "range" else RSSI, source] = layout.width + start
-        nodes = layout.state.nodes
-        outside = [nodes[name].role in physics.OUTSIDE_ROLES for name in layout.state.owners]
-        found = choose(pairs, a.stood, b.stood, technology, np.array(outside, dtype=bool))
-        a.take(found.chosen)
-        b.take(found.chosen)
-        self._a, self._b = a, b
-        self.pairs: Array = kept(pairs, found.chosen)
-        self._extra, self._slab = kept(found.extra, found.chosen), kept(found.slab, found.chosen)
-        self._inside = kept(found.inside, found.chosen)
-
-    def _singles(self, layout: Layout, since_t: float) -> None:
-        singles = layout.state.ledger.table("singles")
-        singles = singles[singles[:, 0] >= since_t]
-        nothing = np.zeros(len(singles), dtype=bool)
-        on = Ends(layout, singles[:, 1].astype(np.int64), singles[:, 0], nothing, self._nodes)
-        chosen = on.usable & (on.columns[:, 0] >= 0)
-        on.take(chosen)
-        self.singles: Array = singles[chosen]
-        self._on = on
-
-    def _drops(self, layout: Layout, since_t: float) -> None:
-        drops = layout.state.ledger.table("drops")
-        drops = drops[drops[:, 0] >= since_t]
-        nothing = np.zeros(len(drops), dtype=bool)
-        by = Ends(layout, drops[:, 2].astype(np.int64), drops[:, 0], nothing, self._nodes)
-        crumb = Ends(layout, drops[:, 1].astype(np.int64), drops[:, 0], nothing, self._nodes)
-        chosen = by.usable & crumb.usable
-        by.take(chosen)
-        crumb.take(chosen)
-        self.drops: Array = drops[chosen]
-        self._by, self._crumb = by, crumb
+        self._inside, self._strongest, self._unsure_m2 = found.inside, found.strongest, found.unsure_m2
+        self._bearings, self._readings = found.bearings, found.readings
 
     def of(self, numbers: Sequence[int]) -> NDArray[np.bool_]:
         """Which of them tell of some walks, or of what these have dropped, m.
@@ -189,10 +134,7 @@ class Rows:
         """Give each reading the noise that has been learned of its technology and its link."""
         names = self._layout.state.sources
         known = [(noise.get(name, LearnedNoise()), name.startswith(UNTOLD_POWER)) for name in names]
-        told = [
-            (one.factor, one.shared, one.outliers(NOISES[RSSI if power else RANGE, 0].item()))
-            for one, power in known
-        ]
+        told = [one.terms(NOISES[RSSI if power else RANGE, 0].item()) for one, power in known]
         learned = np.array(told).reshape(-1, 3)
         white, common, outliers = scattered(learned, self._rows, self._readings.kind, self._inside)
         self.noise[:, 0] = outliers
@@ -221,8 +163,8 @@ class Rows:
         self._tell(white, common)
 
     def _tell(self, white: Array, common: Array) -> None:
-        self._told, self._alone = sigmas(white, common, self._rows), np.sqrt(white + common)
-        self.sigma = self._told.copy()
+        self.told, self._alone = sigmas(white, common, self._rows), np.sqrt(white + common)
+        self.sigma = self.told.copy()
 
     def rarer(self) -> tuple[Integers, Self]:
         """The pairs that there would be had each link been read once a second, and the rows as noisy as then.
@@ -236,7 +178,7 @@ class Rows:
         other.alike = np.concatenate([alike, self.alike[m:]])
         other.noise = self._usual_noise
         told = sigmas(self._white, self._common, self._rows._replace(alike=other.alike))
-        other.sigma = np.sqrt(np.maximum(self.sigma**2 - self._told**2, 0.0) + told**2)
+        other.sigma = np.sqrt(np.maximum(self.sigma**2 - self.told**2, 0.0) + told**2)
         return chosen, other
 
     def widen(self, x: Array, jacobian: Array) -> None:
@@ -249,9 +191,10 @@ class Rows:
             x: the estimate, flat.
             jacobian: of the rows, m × 14, by which the noise of a place becomes one of the reading.
         """
-        self.sigma = self._told.copy()
-        through = self.through(x) if self.floors is None else self.floors
-        stretch(self._readings, x, through, self._strongest, self.alike, self._alone, self.sigma)
+        self.sigma = self.told.copy()
+        held = self.floors is not None
+        through = self._inside if self.floors is None else self.floors
+        stretch(self._readings, x, through, held, self._strongest, self.alike, self._alone, self.sigma)
         add_unsure(jacobian, *self._unsure_m2, self.sigma)
 
     def through(self, x: Array) -> NDArray[np.bool_]:
@@ -298,3 +241,15 @@ class Rows:
     def readings(self) -> Readings:
         """All that their residuals follow from, as numbers."""
         return self._readings
+
+
+def technologies_of(layout: Layout) -> Integers:
+    """First column of each technology of a window, kinds × sources; −1: there is none.
+
+    After those of the kinds of pairs stand altimeters.
+    """
+    found = np.full((ALTIMETER + 1, len(layout.state.sources)), -1, dtype=np.int64)
+    of_kind = {"range": RANGE, "rssi": RSSI, "altimeter": ALTIMETER}
+    for (kind, source), start in layout.technologies.items():
+        found[of_kind[kind], source] = layout.width + start
+    return found

@@ -80,7 +80,7 @@ def explain(
     doubt = doubt_m2(otherwise(layout, solved.x, modes).get(name, ()), solved.x[start : start + 2])
     across = told[:, :2]
     total = float(np.trace(covariance[:2, :2]))
-    doubt[2, 2] += node.doubt_up_m2
+    doubt[2, 2] = max(doubt[2, 2], node.doubt_up_m2 - float(covariance[2, 2]))
     doubt += swung(told[:, 3 : 3 + len(headings)], headings, start)
     doubt += doubted(judged, solved.x, told[:, 3 + len(headings) :], start)
     rows = problem.rows

@@ -42,7 +42,7 @@ def tracks(
         node, name, start = layout.state.life(number), layout.state.owners[number], layout.stands[number]
         place = tuple_of(x[size + start : size + start + 3])
         told = border[start : start + 3, start : start + 3].copy()
-        told[2, 2] += node.doubt_up_m2
+        told[2, 2] = max(told[2, 2], node.doubt_up_m2)
         covariance = upper_triangle(told)
         first, last = lifetimes[name]
         since = max(drops.get(number, first), first) if name in found or number in drops else first
@@ -138,7 +138,8 @@ def _walked(
     if walk.way is not None:
         bridged = walk.way.bridged(seconds)
         covariance[:, range(3), range(3)] += bridged[:, None] * np.array([1.0, 1.0, 0.1])
-        covariance[:, 2, 2] += walk.node.doubt_up_m2 * walk.way.gone(seconds)
+        doubt_m2 = walk.node.doubt_up_m2 * walk.way.gone(seconds)
+        covariance[:, 2, 2] = np.maximum(covariance[:, 2, 2], doubt_m2)
     return [
         TrackPoint(t=t, position_m=tuple_of(p), covariance_m2=upper_triangle(c))
         for t, p, c in zip(seconds.tolist(), places, covariance, strict=True)

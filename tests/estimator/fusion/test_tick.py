@@ -21,6 +21,7 @@ TELL_NOTHING: list[AnyReading] = [
     NAMED,
     Position(t=NOW, node="ff1", wgs84=(48.1, 11.5, 520.0)),
     Pressure(t=NOW, node="ff1", pressure_pa=101_000.0),
+    Altitude(t=NOW, node="ff1", up_m=0.0),
     Rssi(t=NOW, a="ff1", b="unplaced", dbm=-60.0),
     Range(t=NOW, a="ff1", b="unplaced", range_m=7.0),
     Bearing(t=NOW, a="ff1", b="unplaced", bearing_rad=0.1),
@@ -28,7 +29,6 @@ TELL_NOTHING: list[AnyReading] = [
 TELL: list[AnyReading] = [
     Displacement(t=NOW, node="ff1", delta_m=(1.0, 0.0, 0.0)),
     Position(t=NOW, node="ff1", position_m=(10.0, 0.0, 0.0)),
-    Altitude(t=NOW, node="ff1", up_m=0.0),
     Rssi(t=NOW, a="ff1", b="base", dbm=-60.0),
     Range(t=NOW, a="base", b="ff1", range_m=10.0),
     Drop(t=NOW, node="b1", by="ff1"),
@@ -48,6 +48,14 @@ def after(reading: AnyReading) -> NodeEstimate:
 def test_what_says_nothing_of_a_place_leaves_the_fix_as_old_as_it_was(reading: AnyReading) -> None:
     """Who was lost would be shown as found again, where he was last heard of."""
     assert after(reading).t == SILENT_SINCE
+
+
+def test_an_altimeter_tells_of_a_place_once_it_is_zeroed() -> None:
+    tracker = KirchhoffTracker()
+    tracker.fold([Node(t=0.0, node="base", role="base"), Node(t=0.0, node="ff1", role="responder")])
+    tracker.fold([Displacement(t=float(t), node="ff1", delta_m=(0.5, 0.0, 0.0)) for t in range(1, 21)])
+    tracker.fold([Altitude(t=t, node="ff1", up_m=0.0) for t in (*range(1, 7), NOW)])
+    assert next(estimate for estimate in tracker.estimates() if estimate.node == "ff1").t == NOW
 
 
 @pytest.mark.parametrize("reading", TELL, ids=lambda reading: type(reading).__name__)

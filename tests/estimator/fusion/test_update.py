@@ -6,10 +6,25 @@ import pytest
 from estimator.fusion.learned.links import ECHO_M, ECHO_ODDS, ERROR, KEPT, NEW
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.physics import ECHOES
-from estimator.fusion.rows.descent import SOLVED, Found
-from estimator.fusion.rows.rows import EXTRA, FIELDS, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
-from estimator.fusion.update import odd, tally
+from estimator.fusion.rows.descent import GOOD, INDEFINITE, RESIDUAL, SOLVED, UNSOLVABLE, Found
+from estimator.fusion.rows.rows import (
+    EXTRA,
+    FIELDS,
+    KIND,
+    LINK,
+    NOMINAL,
+    ONE,
+    OUTLIERS,
+    SIGMA,
+    SOURCE,
+    VALUE,
+    A,
+    B,
+)
+from estimator.fusion.update import odd, take_in, tally
 from estimator.graph.dense import Array
+from estimator.graph.kirchhoff import Kirchhoff
+from estimator.graph.variable import Variable
 
 POWER_DBM, EXPONENT = -40.0, 2.0
 
@@ -88,3 +103,44 @@ def test_an_outlier_is_told_from_two_in_a_row_on_one_link(kept: float, error: fl
     assert odd(table, bad, links, doubted=True)
     assert not odd(table, good, links, doubted=True)
     assert not odd(table[:0], good[:0], links, doubted=True)
+
+
+def unit(information: float = 4.0) -> Kirchhoff:
+    """A unit whose heading, bias and scale are known by so much each."""
+    graph = Kirchhoff()
+    graph.add_node(Variable("unit", "ff"), (0.0, 0.0, 0.0), (information**-0.5,) * 3)
+    return graph
+
+
+def held(graph: Kirchhoff, heading_rad: float) -> tuple[tuple[int, float, bool, int], Array]:
+    """A heading of ff that is told as surely as it is known, taken in; what comes of it."""
+    table, told = np.zeros((1, FIELDS)), np.empty((1, 3))
+    table[0, [B, EXTRA, SOURCE, LINK]] = -1.0
+    table[0, KIND], table[0, A], table[0, VALUE] = ONE, 0, heading_rad
+    table[0, SIGMA], table[0, NOMINAL], table[0, OUTLIERS] = 0.5, 0.5, 0.0
+    newest, sums = np.array([NEW]), np.zeros((1, 6))
+    found = take_in(table, *graph.storage(), graph.size, graph.firsts("unit"), newest, told, sums, 6)
+    return found, told
+
+
+def test_a_state_rests_where_its_readings_have_led_it() -> None:
+    """Known and told alike, the heading goes half the way; nothing is left to be solved."""
+    graph = unit()
+    (outcome, turned_rad, again, outliers), told = held(graph, -0.2)
+    assert (outcome, again, outliers) == (SOLVED, False, 0)
+    assert turned_rad == pytest.approx(0.1)
+    assert graph.reference == pytest.approx([-0.1, 0.0, 0.0])
+    assert graph.information == pytest.approx(np.diag([8.0, 4.0, 4.0]))
+    assert (graph.vector == 0.0).all()
+    assert told[0, [RESIDUAL, GOOD]] == pytest.approx([-0.1, 1.0])
+
+
+def test_a_state_stays_as_it_was_where_readings_cannot_be_solved() -> None:
+    graph = unit()
+    before = graph.copy()
+    assert held(graph, np.nan)[0][0] == UNSOLVABLE
+    assert (graph.information == before.information).all()
+    assert (graph.reference == before.reference).all()
+    graph.storage()[0][0, 0] = -1.0
+    assert held(graph, 0.2)[0][0] == INDEFINITE
+    assert (graph.reference == before.reference).all()

@@ -188,3 +188,19 @@ def test_a_nonlinear_graph_relinearised_to_rest_agrees_with_gtsam() -> None:
     for i in range(4):
         block = covariance[3 * i : 3 * i + 3, 3 * i : 3 * i + 3]
         assert np.abs(block - marginals.marginalCovariance(i)).max() < 1e-5
+
+
+def test_the_first_rows_of_a_kind_of_blocks_follow_what_enters_and_leaves() -> None:
+    """A copy that goes its own way changes nothing of the original's."""
+    graph = Kirchhoff()
+    for name in ("a", "b"):
+        graph.add_node(node(name), np.zeros(3), (1.0,) * 3)
+        graph.add_node(Variable("unit", name), np.zeros(3), (1.0,) * 3)
+    assert graph.firsts("unit").tolist() == [3, 9]
+    twin = graph.copy()
+    twin.delete_nodes([node("a")])
+    assert twin.firsts("unit").tolist() == [0, 6]
+    graph.add_node(Variable("unit", "c"), np.zeros(3), (1.0,) * 3)
+    assert graph.firsts("unit").tolist() == [3, 9, 12]
+    assert twin.firsts("unit").tolist() == [0, 6]
+    assert graph.firsts("velocity").tolist() == []

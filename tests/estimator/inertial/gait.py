@@ -59,6 +59,15 @@ class Gait(NamedTuple):
         """Its samples, so many a reading."""
         return [self.imu(first, first + each, node) for first in range(0, len(self.t), each)]
 
+    def sampled(self, pace: float) -> "Gait":
+        """The same, by a unit whose samples follow each other `pace` times as slowly as it says."""
+        t = np.arange(self.t[0], self.t[-1], pace * STEP_S)
+        force, rate, place_m = (
+            np.array([np.interp(t, self.t, column) for column in each.T]).T
+            for each in (self.force, self.rate, self.place_m)
+        )
+        return Gait(t, force, rate, place_m, self.heading_rad)
+
     def noisy(self, rng: np.random.Generator, bias_radps: float = 0.005) -> "Gait":
         """The same, felt by a small MEMS unit whose gyros have biases."""
         bias = rng.normal(0.0, bias_radps, 3)

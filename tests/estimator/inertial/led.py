@@ -4,11 +4,32 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.inertial.navigation import Led, Navigation, navigate
+from estimator.estimate import Notice
+from estimator.inertial.led import Led
+from estimator.inertial.navigation import Navigation, navigate
 from estimator.inertial.samples import pieces
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.imu import Imu
-from tests.estimator.inertial.gait import STEP_S, Gait
+from estimator.measurements.node import Node
+from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.ellipses import INSIDE, outside
+from tests.estimator.inertial.gait import STEP_S, Gait, Stride
+
+BLOCK = [*[Stride()] * 8, Stride(0.9, 0.785), Stride(0.9, 0.785)]
+"""One side of a block, and a turn to the left."""
+
+
+def entered(t: float, heading_rad: float = 0.0) -> Node:
+    """ff1 at the door, who faces what he is told to."""
+    return Node(
+        t=t,
+        node="ff1",
+        role="responder",
+        position_m=(0.0, 0.0, 0.0),
+        sigma_m=0.1,
+        heading_rad=heading_rad,
+        heading_sigma_rad=0.02,
+    )
 
 
 def followed(readings: list[Imu], heading_rad: float = 0.0) -> tuple[list[Led], list[str]]:
@@ -32,6 +53,24 @@ def where(displacements: Sequence[Displacement]) -> np.ndarray:
 def true_m(gait: Gait, t: float) -> np.ndarray:
     """Where the boot really is, 3 (m)."""
     return np.array([np.interp(t, gait.t + STEP_S, gait.place_m[:, axis]) for axis in range(3)])
+
+
+def told_of(truth: Gait, felt: Gait, begins: Node) -> tuple[list[Notice], float]:
+    """Follow a boot by what its unit has felt: he is inside the ellipse shown after each reading.
+
+    Returns:
+        What is said meanwhile, and how far off he was shown at most (m).
+    """
+    tracker, notices, farthest_m = KirchhoffTracker(), list[Notice](), 0.0
+    tracker.fold([begins])
+    for reading in felt.readings():
+        tracker.fold([reading])
+        (found,) = tracker.estimates()
+        notices += tracker.take_notices()
+        there = true_m(truth, found.t)
+        assert outside(found.position_m, found.covariance_m2, there) < INSIDE
+        farthest_m = max(farthest_m, float(np.linalg.norm(np.array(found.position_m) - there)))
+    return notices, farthest_m
 
 
 def unsure_m(found: Sequence[Displacement]) -> float:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from estimator.inertial.holding import LEVEL_M
-from estimator.inertial.navigation import Led
+from estimator.inertial.led import Led
 from tests.estimator.inertial.gait import Gait, Stride, walked
 from tests.estimator.inertial.led import followed, where
 

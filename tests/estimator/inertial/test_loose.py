@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from estimator.inertial.navigation import Led
+from estimator.inertial.led import Led
 from tests.estimator.inertial.gait import Gait
 from tests.estimator.inertial.led import followed, true_m, unsure_m, where
 from tests.estimator.inertial.moves import Moves, Unit

@@ -49,8 +49,8 @@ def test_the_time_in_which_a_boot_is_levelled_is_told_as_well(first: int) -> Non
 def test_whoever_goes_down_a_stairwell_is_ever_less_sure_where_he_faces() -> None:
     """Turns the same way are off by what a gyro's scale is; a corner and back by no more than the corner."""
     quarter = 0.5 * np.pi
-    well, _ = followed([walked([Stride(1.0, quarter)] * 40).imu()])
-    corners, _ = followed([walked([Stride(1.0, quarter), Stride(1.0, -quarter)] * 20).imu()])
+    well, _ = followed(walked([Stride(1.0, quarter)] * 40).readings())
+    corners, _ = followed(walked([Stride(1.0, quarter), Stride(1.0, -quarter)] * 20).readings())
     assert sum(d.turned_rad2 for d in well) > (GYRO_SCALE_SIGMA * 40.0 * quarter) ** 2
     assert sum(d.turned_rad2 for d in corners) < 2.0 * ATTITUDE_WALK**2 * corners[-1].t + 1e-4
 

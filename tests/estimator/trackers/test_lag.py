@@ -26,7 +26,7 @@ def test_a_late_reading_goes_back_to_a_state_soon_before_it() -> None:
     for reading in walk(STEPS):
         tracker.fold([reading])
         tracker.estimates()
-    ticks = [tick for tick, _ in tracker._lag._checkpoints]
+    ticks = [tick for tick, _ in tracker._lag._sure.checkpoints]
     for late_s in (1, 3, 10, 30, 55):
         before = max(tick for tick in ticks if tick <= STEPS - late_s)
         assert STEPS - late_s - before <= 16
@@ -40,7 +40,7 @@ def test_what_is_kept_does_not_grow_with_the_incident() -> None:
             tracker.fold([reading])
             tracker.estimates()
         sizes.append(len(tracker.snapshot()))
-        assert len(tracker._lag._checkpoints) < 20
+        assert len(tracker._lag._sure.checkpoints) < 20
     assert sizes[1] < 1.1 * sizes[0]
 
 
@@ -72,4 +72,39 @@ def test_what_came_too_late_is_counted_over_all_calls_and_restarts() -> None:
         "1 reading so far came more than 60 s late and is not fused",
         "2 readings so far came more than 60 s late and are not fused",
         "3 readings so far came more than 60 s late and are not fused",
+    ]
+
+
+def step_to(t: float) -> Displacement:
+    return Displacement(t=t, node="ff1", delta_m=(1.0, 0.0, 0.0))
+
+
+def test_whose_clock_made_everybody_elses_readings_late_is_said() -> None:
+    astray = Position(t=4e9, node="uav", position_m=(0.0, 0.0, 9.0))
+    tracker = KirchhoffTracker()
+    tracker.fold([*walk(10), astray])
+    tracker = KirchhoffTracker.restore(tracker.snapshot())
+    tracker.fold([step_to(11.0)])
+    (text,) = [notice.text for notice in tracker.take_notices() if notice.code == "too_late"]
+    late, _, why = text.partition(": ")
+    assert late == "1 reading so far came more than 60 s late and is not fused"
+    assert why == "a reading of uav put time forward by 3999999990 s to t = 4000000000"
+
+
+def test_a_first_reading_astray_is_named_too() -> None:
+    tracker = KirchhoffTracker()
+    for reading in (Position(t=4e9, node="uav", position_m=(0.0, 0.0, 9.0)), *walk(0)):
+        tracker.fold([reading])
+    assert [notice.text.partition(": ")[2] for notice in tracker.take_notices()] == [
+        "a reading of uav put time forward to t = 4000000000"
+    ]
+
+
+def test_what_is_late_without_anybodys_leap_blames_nobody() -> None:
+    astray = Position(t=4e9, node="uav", position_m=(0.0, 0.0, 9.0))
+    tracker = KirchhoffTracker()
+    tracker.fold([*walk(STEPS), astray])
+    tracker.fold([step_to(STEPS - 100.0)])
+    assert [notice.text for notice in tracker.take_notices() if notice.code == "too_late"] == [
+        "1 reading so far came more than 60 s late and is not fused"
     ]

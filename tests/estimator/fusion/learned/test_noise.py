@@ -70,3 +70,8 @@ def test_however_often_one_listens_through_a_floor_it_tells_no_more_than_the_flo
 
 def test_the_near_zone_ends_at_a_metre_and_a_half() -> None:
     assert near_dbm(-40.0, 2.5) == pytest.approx(-40.0 - 25.0 * np.log10(1.5))
+
+
+def test_what_is_known_of_a_technology_is_the_same_all_at_once_as_one_by_one() -> None:
+    noise = LearnedNoise(squares=40.0, products=9.0, seen=20.0, odd=3.0)
+    assert noise.terms(0.1) == (noise.factor, noise.shared, noise.outliers(0.1))

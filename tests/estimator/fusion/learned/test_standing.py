@@ -117,7 +117,7 @@ def test_whoever_sets_off_is_biased_less_surely_than_he_was_at_rest(stood_s: int
         fold_tick(state, t, [reading])
     bias = state.graph.rows(state.nodes["ff1"].unit).start + 1
     sigma = math.sqrt(state.graph.covariance()[bias, bias])
-    ((told_t, _, _, value, told_sigma, _),) = state.ledger.table("singles")
+    ((told_t, _, _, value, told_sigma, *_),) = state.ledger.table("singles")
     assert told_t <= stood_s, "what he turns as he goes is no bias"
     assert value == pytest.approx(0.001)
     assert told_sigma < 0.3 * physics.SET_OFF_BIAS_RADPS

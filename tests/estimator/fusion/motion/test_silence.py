@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from estimator.fusion import physics
 from estimator.fusion.entering.introduce import attach_unit
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.motion.silence import unheard_m2, wandered_m2
+from estimator.fusion.motion.silence import unheard_m2, wandered_m2, went_on
 from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
@@ -36,6 +36,22 @@ def test_a_way_varies_as_that_of_walkers_who_change_their_speed_at_random(silent
         speed = keeps * speed + kick
         way += 0.5 * (before + speed) * step_s
     assert wandered_m2(silent_s, 0.0) == pytest.approx(float(way.var()), rel=0.04)
+
+
+@pytest.mark.parametrize("gap_s", [0.2, 0.9, 4.0])
+def test_who_has_just_told_how_he_goes_goes_on_so_and_may_change_it_at_random(gap_s: float) -> None:
+    chance = np.random.default_rng(2)
+    walkers, step_s, told_mps = 20_000, gap_s / 200.0, 1.2
+    keeps = math.exp(-step_s / physics.UNHEARD_MEMORY_S)
+    speed, way = np.full(walkers, told_mps), np.zeros(walkers)
+    for _ in range(200):
+        before = speed
+        kick = chance.normal(0.0, physics.SILENT_SPEED_MPS * math.sqrt(1.0 - keeps**2), walkers)
+        speed = keeps * speed + kick
+        way += 0.5 * (before + speed) * step_s
+    along_s, variance_m2 = went_on(gap_s)
+    assert told_mps * along_s == pytest.approx(float(way.mean()), rel=0.02)
+    assert variance_m2 == pytest.approx(float(way.var()), rel=0.05)
 
 
 @given(st.floats(0.001, 0.05))

@@ -38,7 +38,7 @@ def crew() -> FusionState:
     x = state.graph.reference.copy()
     x[state.graph.starts[state.nodes["ff"].unit]] = 0.5 * math.pi
     x[state.graph.starts[state.nodes["uav"].velocity]] = 3.0
-    state.graph.settle(state.graph.information.copy(), x)
+    state.graph.rebase(x)
     return state
 
 

@@ -15,8 +15,11 @@ from tests.estimator.walks import two_responders
 
 
 def going_on() -> Problem:
-    """The second half of what two responders, who hear each other, have gone: the first half is its prior."""
-    whole = problem_of(fused(two_responders(seconds=40)))
+    """The second half of what two responders, who hear each other, have gone: the first half is its prior.
+
+    It tells enough that nothing ends far from where the prior was linearised: there rows and costs disagree.
+    """
+    whole = problem_of(fused(two_responders(seconds=80)))
     solved, cut = whole.solve(whole.layout.start()), whole.layout.length // 2
     return window_from(whole, solved, cut)
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.fusion.motion.silence import wandered_m2
-from estimator.smoothing.keyframes.ways import LAID, Laid, Way
+from estimator.smoothing.keyframes.ways import LAID, Laid, Way, lay_out
 
 Steps = np.ndarray[tuple[int, int], np.dtype[np.float64]]
 
@@ -51,10 +51,15 @@ def test_a_way_laid_out_for_readings_is_what_lies_between_their_epochs(
     seed: int, end: float, lengths: list[float]
 ) -> None:
     way = Way(100.0, walked(seed), (1.0, 1.0))
-    since = np.array([end, *np.maximum(end - np.array(lengths), 100.0)])
-    until, numbers = np.full(len(since), end), np.arange(len(since)) % 2
+    keyframes = np.array([end, *np.maximum(end - np.array(lengths), 100.0)])
+    # One end after the other shares keyframe and epoch, either of them, or neither.
+    since, until = (
+        np.repeat(keyframes, 8),
+        end + np.tile([0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0], len(keyframes)),
+    )
+    numbers = np.arange(len(since)) % 2
     laid = Laid(*(np.full((len(since), 3), 7.0) for _ in range(3)))
-    way.lay_out(1, numbers, since, until, laid)
+    lay_out(way.begin_t, way.marks, way.sums, 1, numbers, since, until, laid)
     mine, said = numbers == 1, way.between(since, until)[:, :LAID]
     assert laid.delta_m[mine] == pytest.approx(said[mine, :3])
     assert laid.moment[mine] == pytest.approx(said[mine, 3:6])

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from estimator.fusion import physics
 from estimator.fusion.memory.ledger import Ledger
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.tick import flush, fold_tick, keep_poses
+from estimator.fusion.tick import flush, fold_tick
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.position import Position
@@ -52,7 +52,7 @@ def walked(seconds: int, factors: tuple[float, float], seed: int = 1) -> FusionS
         for second in range(1, seconds + 1):
             fold_tick(state, float(second), [r for r in readings[1:] if second - 1.0 < r.t <= second])
         flush(state)
-    keep_poses(state)
+    state.keep_poses()
     return state
 
 

@@ -11,6 +11,7 @@ import gtsam
 import numpy as np
 import pytest
 
+from estimator.fusion.memory.prior import SIZES
 from estimator.graph.dense import Array, Indices
 from estimator.measurements import AnyReading
 from estimator.simulate import paper_a
@@ -27,7 +28,7 @@ AT_REST = 1e-9
 
 
 class Blocks:
-    """The unknowns as GTSAM's variables: six of a walk and keyframe, three of what stands, two of a radio."""
+    """The unknowns as GTSAM's variables: six of a walk and keyframe, three of what stands, of radios two."""
 
     def __init__(self, problem: Problem, start: Array) -> None:
         self.problem, self.start = problem, start
@@ -40,8 +41,8 @@ class Blocks:
                 self._add(k * layout.width + STATES * i + np.arange(STATES))
         for first in layout.stands.values():
             self._add(size + first + np.arange(3))
-        for first in layout.technologies.values():
-            self._add(size + first + np.arange(2))
+        for (kind, _), first in layout.technologies.items():
+            self._add(size + first + np.arange(SIZES[kind]))
         self.move(start)
 
     def _add(self, columns: Indices) -> None:

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from estimator.fusion.memory.prior import Key, Prior
+from estimator.fusion import physics
+from estimator.fusion.memory.prior import SIZES, Key, Prior
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
@@ -138,6 +139,8 @@ def test_covariances_and_responses_are_blocks_of_the_dense_inverse(shape: Shape)
     put = np.random.default_rng(0).normal(0.0, 1.0, (len(inverse), 2))
     moved, fixed = chain.response(put[:size].reshape(shape.length, width, 2), put[size:])
     assert_alike(np.concatenate([moved.reshape(size, 2), fixed]), inverse @ put, 1e-9)
+    taken = chain.explained(put[:size].reshape(shape.length, width, 2), put[size:])
+    assert_alike(taken, put.T @ inverse @ put, 1e-9)
 
 
 def test_groups_are_what_direct_readings_couple() -> None:
@@ -173,7 +176,7 @@ def prior_at(problem: Problem, solved: Solved, cut: int) -> Prior:
         at += range(layout.width + start, layout.width + start + 3)
     for key, start in layout.technologies.items():
         keys.append(key)
-        at += range(layout.width + start, layout.width + start + 2)
+        at += range(layout.width + start, layout.width + start + SIZES[key[0]])
     reference = from_cut(problem, solved.x, cut)[np.r_[: layout.width, -layout.border : 0]][at]
     return Prior(tuple(keys), left.matrix[np.ix_(at, at)], left.vector[at], reference, epochs)
 
@@ -245,8 +248,14 @@ def test_the_same_for_a_unit_whose_heading_is_known(cut: int) -> None:
 
 
 @pytest.mark.parametrize("cut", [1, 5, 30, 58])
-def test_among_beacons_ranges_and_breadcrumbs_a_window_takes_the_step_of_the_whole_incident(cut: int) -> None:
-    """Readings of all kinds, outliers included, linearised at the same estimate."""
+def test_among_beacons_ranges_and_breadcrumbs_a_window_takes_the_step_of_the_whole_incident(
+    cut: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Readings of all kinds, outliers included, linearised at the same estimate.
+
+    Altimeters that stay as they are: from window to window they may drift, in a whole incident they do not.
+    """
+    monkeypatch.setattr(physics, "HEIGHT_WALK_M_PER_ROOT_S", 0.0)
     whole = problem_of(fused(two_responders(60)))
     at = whole.solve(whole.solve(whole.layout.start()).x, iterations=0)
     window = window_from(whole, at, cut)
@@ -274,3 +283,18 @@ def test_a_unit_that_was_silent_when_the_window_was_cut_goes_on_from_where_it_wa
         column = last + problem.layout.column_of[now.nodes["ff1"].index]
         places.append(x[column : column + 3])
     assert places[1] == pytest.approx(places[0], abs=0.05)
+
+
+def test_from_window_to_window_an_altimeter_drifts_and_nothing_else_is_forgotten() -> None:
+    whole = problem_of(fused(two_responders(60)))
+    at = whole.solve(whole.solve(whole.layout.start()).x, iterations=0)
+    window = window_from(whole, at, 30)
+    again = window.solve(from_cut(whole, at.x, 30), iterations=0)
+    again.chain.solve()
+    at.chain.solve()
+    border, before = again.chain.covariances()[2], at.chain.covariances()[2]
+    found = {kind for kind, _ in whole.layout.technologies}
+    assert "altimeter" in found
+    for (kind, _), start in whole.layout.technologies.items():
+        grown = border[start, start] / before[start, start]
+        assert grown > 1.0001 if kind == "altimeter" else grown == pytest.approx(1.0, abs=1e-3)

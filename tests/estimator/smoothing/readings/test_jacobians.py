@@ -11,7 +11,7 @@ from estimator.fusion import physics
 from estimator.fusion.memory.ledger import BODY_BEARING, RANGE, RSSI
 from estimator.graph.dense import Array
 from estimator.measurements import bearing
-from estimator.smoothing.keyframes.ends import Ends, place_ends
+from estimator.smoothing.keyframes.ends import ends_of, ground_of, place_ends
 from estimator.smoothing.keyframes.walks import STATES, Motion, free_motions, led_by, unit_motion
 from estimator.smoothing.keyframes.ways import Way
 from estimator.smoothing.problem.solve import Problem
@@ -205,14 +205,16 @@ def test_the_places_of_ends_change_with_their_columns_as_told(incident: Problem,
     layout = incident.layout
     x = random_state(incident, seed)
     numbers = chance.integers(0, len(layout.state.owners), 60)
-    ends = Ends(layout, numbers, chance.uniform(0.0, 41.0, 60), chance.choice([False, True], 60))
+    ends = ends_of(
+        ground_of(layout), numbers, chance.uniform(0.0, 41.0, 60), chance.choice([False, True], 60)
+    )
     turned = place_ends(ends.table, x).turned
     expected = difference(lambda at: place_ends(ends.table, at).place.ravel(), x).reshape(60, 3, -1)
     told = np.zeros_like(expected)
     for end in range(60):
         derivative = np.hstack([np.eye(3), turned[end]])
         for column in range(STATES):
-            if ends.columns[end, column] >= 0:
+            if ends.stood.columns[end, column] >= 0:
                 told[end, :, ends.table.at[end, column]] += derivative[:, column]
             else:
                 assert column < 3 or not derivative[:, column].any()
@@ -232,7 +234,9 @@ def test_a_moving_end_is_where_it_is_led_to_from_either_keyframe(incident: Probl
         duration = layout.times[k + 1 : k + 2, walk] - layout.times[k : k + 1, walk]
         keyframes[k + 1, walk] = led_by(keyframes[k : k + 1, walk], part[:, :3], part[:, 3:6], duration)[0][0]
     t = np.linspace(0.0, 40.0, 301)
-    ends = Ends(layout, np.full(len(t), layout.walks[walk].number), t, np.zeros(len(t), dtype=bool))
+    ends = ends_of(
+        ground_of(layout), np.full(len(t), layout.walks[walk].number), t, np.zeros(len(t), dtype=bool)
+    )
     places = place_ends(ends.table, x).place
     sums = way.between(np.zeros(len(t)), t)
     assert np.abs(places - sums[:, :3]).max() < 1e-9

@@ -84,3 +84,26 @@ def test_who_ranges_once_a_second_is_asked_of_all_of_it_as_it_is() -> None:
     assert asked.alike == pytest.approx(rows.alike)
     assert asked.sigma == pytest.approx(rows.sigma)
     assert (asked.noise == rows.noise).all()
+
+
+def test_floors_that_are_held_widen_as_those_that_an_estimate_has() -> None:
+    """A crumb three storeys up is heard through floors; held on one storey, it is not."""
+    readings: list[AnyReading] = [
+        Node(t=0.0, node="other", role="breadcrumb", position_m=(1.0, 0.0, 9.0), sigma_m=0.05),
+        entered(),
+        *[Rssi(t=float(second), a="ff1", b="other", dbm=-70.0) for second in range(1, 9)],
+    ]
+    problem = problem_of(fused(readings))
+    rows, x = problem.rows, problem.layout.start()
+    jacobian, usual = problem.linearise(x).jacobian, rows.sigma.copy()
+    rows.widen(x, jacobian)
+    told = rows.sigma.copy()
+    rows.floors = rows.through(x)
+    assert rows.floors.all()
+    assert len(rows.floors) == 8
+    rows.widen(x, jacobian)
+    assert (rows.sigma == told).all()
+    assert (told[:8] > usual[:8]).all()
+    rows.floors = np.zeros(8, dtype=np.bool_)
+    rows.widen(x, jacobian)
+    assert (rows.sigma[:8] < told[:8]).all()

@@ -1,0 +1,35 @@
+"""Radios whose antenna delay is not calibrated: their ranges have another bias than those of all others.
+
+Such a radio's ranges are a technology by themselves, with a scale, a bias and a noise of their own.
+"""
+
+from collections.abc import Collection
+
+OF = " of "
+"""No technology's name has a space."""
+Radio = tuple[str, str]
+"""A technology, and the node that carries the radio."""
+
+
+def source_of(technology: str, a: str, b: str, delayed: Collection[Radio]) -> str:
+    """The technology that ranges between two nodes count as.
+
+    Args:
+        technology: what they were reported as.
+        a: one node.
+        b: the other one.
+        delayed: the radios whose antenna delay is not calibrated.
+    """
+    own = sorted(name for name in (a, b) if (technology, name) in delayed)
+    return f"{technology}{OF}{' '.join(own)}" if own else technology
+
+
+def reported_as(source: str) -> str:
+    """What ranges were reported as that count as a technology."""
+    return source.partition(OF)[0]
+
+
+def delays(source: str) -> int:
+    """How many radios whose antenna delay is not calibrated take part in each range of a technology."""
+    names = source.partition(OF)[2]
+    return len(names.split(" ")) if names else 0

@@ -1,0 +1,241 @@
+"""Somebody's way by ranges alone, the rival of the one that his unit tells: which of both foretells ranges?
+
+A unit that is no good makes outliers of good ranges, and the Kirchhoff state is sure of a wrong place. Its
+rival has a velocity that is forgotten with time, as of who has no unit, and follows the same ranges. How
+likely each range was by either, before it was taken in, tells which is to be believed (Dawid, The prequential
+approach, JRSS A 147, 1984). As long as the unit is believed, its rival is drawn to where it leads
+(interacting multiple models, Blom and Bar-Shalom 1988).
+"""
+
+import math
+
+import msgspec
+import numpy as np
+from numba import njit
+
+from estimator.fusion import physics
+from estimator.graph.dense import Array
+from estimator.graph.forgotten import ornstein_uhlenbeck
+
+SPELL_S = 4.0
+"""What stands between two radios stays for as long as one walks through a room (`physics.SHARED_M`): a range
+that comes sooner after the one before it on its link tells as much less."""
+MEMORY_S = 20.0
+"""How long it is remembered what a link has told."""
+LEAST, MOST = -1.0, 12.0
+"""Log odds that a link tells at least and at most: what it told for the unit says little of later."""
+LEAST_ALL = -2.0
+RARE = -4.0
+"""Log odds of a unit that is no good, beforehand: one in 55."""
+EXCESS_M = 2.0
+"""What an obstructed range is too long by on average: exponentially distributed (decision 0009)."""
+WILD, WILD_M = 0.1, 30.0
+"""How many of the bad ranges may be off by anything, too short as well, and by how much."""
+OBSTRUCTED = 0.3
+"""So many ranges at most are taken to be obstructed: a unit that is no good makes outliers of most."""
+SPEED_MPS, FORGOTTEN_S = physics.SPEED_SIGMA_MPS["responder"][0], physics.SPEED_MEMORY_S["responder"]
+LONGEST_S = 600.0
+"""Nobody is followed over longer silences."""
+NOTHING = 1e-9
+LEAST_SHARE = 0.01
+"""What is less likely is not told of."""
+UNIT, LINK, EPOCH, DISTANCE, SIGMA, REST, EAST, NORTH, UP, OUTLIERS, OFF, UNSURE = range(12)
+"""What is told of each range between a unit's bearer and somebody else: number of the unit; of the link;
+epoch (s); distance (m); sigma of its noise (m); variance by what is not known of the other end and of the
+technology (m²); the other end's place, east, north (m); how much higher the bearer is (m); share of outliers;
+how much longer it is than the unit's way foretells (m), and the variance of that (m²)."""
+TOLD = 12
+
+
+class Link(msgspec.Struct, frozen=True, array_like=True):
+    """What the ranges of a link tell.
+
+    Attributes:
+        number: of the link.
+        t: until when (s).
+        gain: log likelihood by the rival less that by the unit.
+    """
+
+    number: int
+    t: float
+    gain: float
+
+
+class Rival(msgspec.Struct, frozen=True, array_like=True):
+    """Where somebody is by ranges alone, and how likely it is that his unit is no good.
+
+    Attributes:
+        t: epoch that it refers to (s).
+        state: east, north (m), and both velocities (m/s).
+        covariance: of these, the upper triangle.
+        links: what each link tells.
+        odds: log odds that the unit is no good.
+    """
+
+    t: float
+    state: tuple[float, ...]
+    covariance: tuple[float, ...]
+    links: tuple[Link, ...]
+    odds: float
+
+    @property
+    def share(self) -> float:
+        """Probability that the unit is no good."""
+        return 1.0 / (1.0 + math.exp(-self.odds))
+
+    def place(self, t: float) -> tuple[Array, Array]:
+        """Where he is at an epoch `t` (s): east, north, 2 (m), and their covariance, 2 × 2 (m²)."""
+        state, covariance = gone_on(np.array(self.state), full(np.array(self.covariance)), t - self.t)
+        return state[:2], covariance[:2, :2]
+
+    def doubt_m2(self, place_m: Array, t: float) -> Array:
+        """What it adds to the covariance of the place that the unit tells, 2 × 2 (m²): see `images.doubt_m2`.
+
+        Args:
+            place_m: where he is shown: east, north (m).
+            t: at which epoch (s).
+        """
+        if self.share < LEAST_SHARE:
+            return np.zeros((2, 2))
+        there_m, unsure = self.place(t)
+        off = there_m - place_m
+        return np.asarray(self.share * (unsure + np.outer(off, off)))
+
+
+def odds_of(links: tuple[Link, ...], t: float) -> float:
+    """Log odds that a unit is no good, at an epoch (s).
+
+    The link that tells most of it does not count: a breadcrumb that was kicked contradicts any way.
+    """
+    told = [link.gain * math.exp((link.t - t) / MEMORY_S) for link in links]
+    return RARE + max(sum(told) - max([*told, 0.0]), LEAST_ALL)
+
+
+@njit(cache=True)
+def full(upper: Array) -> Array:
+    """A symmetric matrix, 4 × 4, from its upper triangle."""
+    found, at = np.empty((4, 4)), 0
+    for r in range(4):
+        for c in range(r, 4):
+            found[r, c] = found[c, r] = upper[at]
+            at += 1
+    return found
+
+
+@njit(cache=True)
+def upper_of(matrix: Array) -> Array:
+    """The upper triangle of a symmetric matrix, 4 × 4."""
+    found, at = np.empty(10), 0
+    for r in range(4):
+        for c in range(r, 4):
+            found[at] = matrix[r, c]
+            at += 1
+    return found
+
+
+@njit(cache=True)
+def gone_on(x: Array, covariance: Array, since_s: float) -> tuple[Array, Array]:
+    """Place and velocity and their covariance after some time; see `motion.free.free_motion`.
+
+    Args:
+        x: east, north (m), and both velocities (m/s).
+        covariance: of these, 4 × 4.
+        since_s: the time (s); what was before is as unsure as now.
+    """
+    moved = x.copy()
+    if since_s <= 0.0:
+        moved[:2] += since_s * x[2:]
+        return moved, covariance.copy()
+    whole, noise = ornstein_uhlenbeck(FORGOTTEN_S, SPEED_MPS, SPEED_MPS, min(since_s, LONGEST_S))
+    transition, added = np.empty((4, 4)), np.empty((4, 4))
+    for r in range(4):
+        for c in range(4):
+            transition[r, c] = whole[r + r // 2, c + c // 2]
+            added[r, c] = noise[r + r // 2, c + c // 2]
+    return transition @ x, transition @ covariance @ transition.T + added
+
+
+@njit(cache=True)
+def likely(off: float, variance: float, outliers: float) -> tuple[float, float]:
+    """Likelihood of what a range is off by, and of its good noise's share in it: too long, hardly too short.
+
+    Args:
+        off: measured less foretold (m).
+        variance: of both (m²).
+        outliers: share of obstructed ranges.
+    """
+    near = math.exp(-0.5 * off * off / variance)
+    good = (1.0 - outliers) * near / math.sqrt(2.0 * math.pi * variance)
+    longer = (math.exp(-off / EXCESS_M) if off > 0.0 else near) / EXCESS_M
+    wild = math.exp(-0.5 * (off / WILD_M) ** 2) / (math.sqrt(2.0 * math.pi) * WILD_M)
+    return good + outliers * ((1.0 - WILD) * longer + WILD * wild) + 1e-300, good
+
+
+@njit(cache=True)
+def follow(x: Array, upper: Array, t: float, told: Array, gains: Array) -> tuple[Array, Array, float]:
+    """Let a rival follow ranges, one after the other.
+
+    Args:
+        x: see `gone_on`.
+        upper: its covariance's upper triangle, 10.
+        t: their epoch (s).
+        told: the ranges, m × `TOLD`, in order of epoch.
+        gains: takes log likelihood by the rival less that by the unit of each, m.
+
+    Returns:
+        x, its covariance, 4 × 4, and their epoch (s) after them.
+    """
+    covariance = full(upper)
+    for r in range(len(told)):
+        x, covariance = gone_on(x, covariance, told[r, EPOCH] - t)
+        t, outliers, noise = told[r, EPOCH], told[r, OUTLIERS], told[r, SIGMA] ** 2
+        east, north = x[0] - told[r, EAST], x[1] - told[r, NORTH]
+        length = math.sqrt(east * east + north * north + told[r, UP] ** 2 + 1e-6)
+        slope = np.array([east / length, north / length, 0.0, 0.0])
+        across = covariance @ slope
+        # Aside of the line to the radio a place that is unsure makes the distance bend.
+        bent = 0.5 * (covariance[0, 0] + covariance[1, 1]) / max(length, 1.0)
+        own = noise + told[r, REST] + bent * bent
+        off, foretold = told[r, DISTANCE] - length, slope @ across
+        by_rival, good = likely(off, foretold + own, outliers)
+        by_unit, _ = likely(told[r, OFF], told[r, UNSURE] + noise, outliers)
+        gains[r] = math.log(by_rival) - math.log(by_unit)
+        sure = good / by_rival
+        known, longer = sure / own, (1.0 - sure) * (1.0 - WILD) / (own + EXCESS_M**2)
+        if known + longer < NOTHING:
+            continue
+        gain = across / (foretold + 1.0 / (known + longer))
+        x = x + gain * (off - EXCESS_M * longer / (known + longer))
+        covariance = covariance - np.outer(gain, across)
+        covariance = 0.5 * (covariance + covariance.T)
+    return x, covariance, t
+
+
+@njit(cache=True)
+def drawn(
+    x: Array, covariance: Array, since_s: float, place_m: Array, own: Array, share: float
+) -> tuple[Array, Array]:
+    """A rival some time later, drawn to where its unit leads.
+
+    Args:
+        x: see `gone_on`.
+        covariance: see `gone_on`.
+        since_s: the time (s).
+        place_m: where the unit leads: east, north (m).
+        own: covariance of that, 2 × 2 (m²).
+        share: how far it is drawn.
+
+    Returns:
+        x, and the upper triangle of its covariance, 10.
+    """
+    x, covariance = gone_on(x, covariance, since_s)
+    for r in range(2):
+        off = place_m[r] - x[r]
+        for c in range(2):
+            both = off * (place_m[c] - x[c])
+            covariance[r, c] += share * (own[r, c] - covariance[r, c]) + share * (1.0 - share) * both
+            covariance[r, 2 + c] *= 1.0 - share
+            covariance[2 + c, r] *= 1.0 - share
+    for r in range(2):
+        x[r] += share * (place_m[r] - x[r])
+    return x, upper_of(covariance)

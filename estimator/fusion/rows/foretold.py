@@ -1,0 +1,105 @@
+"""What a Kirchhoff state foretells of the ranges of a tick before it takes them in, compiled."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from estimator.fusion.learned import rival
+from estimator.fusion.learned.rival import TOLD
+from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.rows.descent import variances
+from estimator.fusion.rows.rows import (
+    A_E,
+    B_E,
+    KIND,
+    LINK,
+    NOMINAL,
+    OUTLIERS,
+    SIGMA,
+    WIDTH,
+    A,
+    B,
+    columns_of,
+    linearise,
+)
+from estimator.graph.dense import Array, Indices
+from estimator.graph.triangular import factorised
+
+NOISIER = 1.5
+"""So many times the claimed or assumed sigma at most: what a bad unit has made of it is not to excuse it."""
+
+
+class Foretold(NamedTuple):
+    """Ranges between a unit's bearer and somebody else.
+
+    Attributes:
+        told: see `rival.UNIT` and what stands with it, m × `TOLD`, in order of epoch.
+        own: variances of each unit's place: east, north, and east and north together, units × 3 (m²).
+    """
+
+    told: Array
+    own: Array
+
+
+@njit(cache=True)
+def foretell(table: Array, epochs: Array, units: Indices, matrix: Array, x: Array) -> Foretold:
+    """What is foretold of the ranges of units; of those between two units nothing, for either may be bad.
+
+    Args:
+        table: of m readings, see `rows.Row`.
+        epochs: theirs, m (s).
+        units: where the position of each begins, ascending or not.
+        matrix: L, n × n, before it takes them in.
+        x: the estimate, n.
+    """
+    found, own = np.empty((len(table), TOLD)), np.zeros((len(units), 3))
+    place = np.full(len(x) + 1, -1)
+    for i in range(len(units)):
+        place[units[i]] = i
+    chosen, unit = np.zeros(len(table), dtype=np.bool_), np.zeros(len(table), dtype=np.intp)
+    for r in range(len(table)):
+        if table[r, KIND] == RANGE and table[r, LINK] >= 0:
+            a, b = place[int(table[r, A])], place[int(table[r, B])]
+            chosen[r], unit[r] = (a >= 0) != (b >= 0), max(a, b)
+    some = np.flatnonzero(chosen)
+    if len(some) == 0:
+        return Foretold(found[:0], own)
+    some = some[np.argsort(epochs[some], kind="mergesort")]
+    rows, m, n = table[some], len(some), len(x)
+    columns, jacobian, residual = columns_of(rows), np.empty((m, WIDTH)), np.empty(m)
+    linearise(rows, columns, x, jacobian, residual)
+    factor, unscale = np.zeros((n, n)), np.empty(n)
+    if not factorised(matrix, factor, unscale):
+        return Foretold(found[:0], own)
+    all_of_it, rest = np.empty(m), np.empty(m)
+    variances(columns, jacobian, factor, unscale, all_of_it)
+    for k in range(m):
+        r = some[k]
+        by_a = place[int(rows[k, A])] >= 0
+        near, far = (0, 3) if by_a else (3, 0)
+        near_m, far_m = (A_E, B_E) if by_a else (B_E, A_E)
+        jacobian[k, near : near + 3] = 0.0
+        squared = 0.0
+        for axis in range(3):
+            here, there = rows[k, near_m + axis], rows[k, far_m + axis]
+            if columns[k, near + axis] >= 0:
+                here += x[columns[k, near + axis]]
+            if columns[k, far + axis] >= 0:
+                there += x[columns[k, far + axis]]
+            squared += (here - there) ** 2
+            found[k, rival.EAST + axis] = there if axis < 2 else here - there
+        found[k, rival.UNIT], found[k, rival.LINK], found[k, rival.EPOCH] = unit[r], rows[k, LINK], epochs[r]
+        # What it would be without the technology's bias and scale, to first order.
+        found[k, rival.DISTANCE] = np.sqrt(squared) + residual[k]
+        found[k, rival.SIGMA] = min(rows[k, SIGMA], NOISIER * rows[k, NOMINAL])
+        found[k, rival.OUTLIERS] = min(rows[k, OUTLIERS], rival.OBSTRUCTED)
+        found[k, rival.OFF], found[k, rival.UNSURE] = residual[k], all_of_it[k]
+    variances(columns, jacobian, factor, unscale, rest)
+    found[:m, rival.REST] = rest
+    for i in range(len(units)):
+        at, along = np.full((3, WIDTH), -1), np.zeros((3, WIDTH))
+        at[:, 0], at[:, 1] = units[i], units[i] + 1
+        along[0, 0] = along[1, 1] = along[2, 0] = along[2, 1] = 1.0
+        variances(at, along, factor, unscale, own[i])
+    return Foretold(found[:m], own)

@@ -1,0 +1,243 @@
+"""Radios whose ranges are all off by the same: an antenna delay that nobody has calibrated.
+
+The map bends until their ranges fit: none of them need stand out. What stands out is the score, all residuals
+of a radio together, held against what they would vary by were it like all others (Rao's test; Engle, Wald,
+likelihood ratio, and Lagrange multiplier tests in econometrics, 1984). With the weights by which outliers
+count less it promises no more than there is to gain (Dempster, Laird, Rubin 1977).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from estimator.fusion import physics
+from estimator.fusion.entering.technologies import technology_states
+from estimator.fusion.learned.calibration import TRUSTED, bias_sigma_m
+from estimator.fusion.learned.delays import Radio, reported_as, source_of
+from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.state import FusionState
+from estimator.graph.dense import Array
+from estimator.graph.kernels import Integers
+from estimator.graph.robust import mixture_cost
+from estimator.smoothing.learning.scores import halves, through
+from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.solved import Solved
+
+ODDS = math.log(TRUSTED / (1.0 - TRUSTED)) - math.log(physics.DELAYED / (1.0 - physics.DELAYED))
+"""Log likelihood ratio from which on a radio is not trusted any more."""
+ALIKE = 3.0
+"""Radios that readings hardly tell apart from the likeliest one are not trusted either."""
+ASKED = 8
+"""So many radios are asked at a time, those with the largest residuals."""
+CONSTANT = 0.7
+"""What one bias gains of what another one in each half of the time would: a breadcrumb that was kicked, or a
+tag that was put down, is off by something else before and after."""
+FARTHEST = 3.0
+"""Of the usual deviation: what is off by more is no antenna delay, but a map that is wrong altogether."""
+NOTHING = 1e-300
+AGAIN, LONGEST_S = 0.5, 60.0
+"""It is asked again after this share of the window, or where something is suspicious, with each solution."""
+
+
+class Delay(NamedTuple):
+    """A radio that may be off.
+
+    Attributes:
+        radio: its technology and node.
+        odds: log likelihood ratio of its being off.
+        bias_m: by how much its ranges then are (m).
+    """
+
+    radio: Radio
+    odds: float
+    bias_m: float
+
+
+class Told(NamedTuple):
+    """The ranges of a window, by the radios at their ends.
+
+    Attributes:
+        radios: those that are asked.
+        ranges: which of the window's rows they are, m.
+        carried: which of the radios are at both ends of each, m × 2; −1: one that is not asked.
+        half: in which half of the time it is to each end, m × 2.
+        score: of a bias of each radio in both halves, radios × 2.
+        told: information on it that the ranges alone have, radios × 2.
+    """
+
+    radios: list[Radio]
+    ranges: Integers
+    carried: Integers
+    half: Integers
+    score: Array
+    told: Array
+
+
+def doubt_delays(state: FusionState, problem: Problem, solved: Solved) -> None:
+    """Trust no radio any longer that is likely to be off: its ranges become a technology by themselves.
+
+    Args:
+        state: takes it; its window is then to be solved again.
+        problem: of the window.
+        solved: its solution, whose chain has been reduced.
+    """
+    span_s = float(problem.layout.grid[-1] - problem.layout.grid[0])
+    if state.newest_t < state.delays_t + min(AGAIN * span_s, LONGEST_S):
+        return
+    found = delays(problem, solved)
+    if not found or found[0].odds < 0.0:
+        state.delays_t = state.newest_t
+    distrust(state, doubted(found))
+
+
+def doubted(found: list[Delay], least: float = ODDS) -> list[Delay]:
+    """Those radios that are not to be trusted.
+
+    Args:
+        found: all that may be off, the likeliest first.
+        least: log likelihood ratio from which on one is not.
+    """
+    return [one for one in found if one.odds > max(least, found[0].odds - ALIKE)]
+
+
+def distrust(state: FusionState, radios: list[Delay]) -> None:
+    """Let the ranges of radios be technologies by themselves, in the ledger and from now on.
+
+    Args:
+        state: the fusion, changed in place.
+        radios: which.
+    """
+    if not radios:
+        return
+    for (technology, name), _, bias_m in radios:
+        state.delayed[technology, name] = None
+        text = (
+            f"{technology} ranges of {name} are off by {bias_m:+.1f} m: its antenna delay is not calibrated"
+        )
+        state.say("outlier", state.newest_t, name, text)
+    pairs = state.ledger.table("pairs").copy()
+    ranges = np.flatnonzero(pairs[:, 1] == RANGE)
+    for source, a, b in np.unique(pairs[ranges][:, [6, 2, 3]].astype(np.intp), axis=0).tolist():
+        was = state.sources[source]
+        name = source_of(reported_as(was), state.owners[a], state.owners[b], state.delayed)
+        if name == was:
+            continue
+        if was in state.noise:
+            state.noise.setdefault(name, state.noise[was])
+        if was in state.calibrations:
+            state.calibrations.setdefault(name, state.calibrations[was])
+        mine = (pairs[:, 1] == RANGE) & (pairs[:, [6, 2, 3]] == (source, a, b)).all(axis=1)
+        pairs[mine, 6] = state.source(name)
+        technology_states(state, name)
+    state.ledger.replace("pairs", pairs)
+    state.due = True
+
+
+def delays(problem: Problem, solved: Solved) -> list[Delay]:
+    """How likely each radio is to be off, the likeliest first; those that are known to be are not asked.
+
+    Args:
+        problem: of a window, or of the whole incident.
+        solved: its solution, whose chain has been reduced.
+    """
+    told = _told(problem, solved)
+    found = {one.radio: one for one in _pulling(problem, solved, told)}
+    found |= {one.radio: one for one in _unbelieved(problem, solved, told)}
+    return sorted(found.values(), key=lambda one: -one.odds)
+
+
+def _told(problem: Problem, solved: Solved) -> Told:
+    rows, state = problem.rows, problem.layout.state
+    ranges, nodes = np.flatnonzero(rows.pairs[:, 1] == RANGE), len(state.owners)
+    keys = rows.pairs[ranges, 6:7].astype(np.intp) * nodes + rows.pairs[ranges, 2:4].astype(np.intp)
+    place = np.full(nodes * len(state.sources), -1)
+    each: dict[Radio, int] = {}
+    for key in np.flatnonzero(np.bincount(keys.ravel(), minlength=len(place))).tolist():
+        # A node that came back, or lies elsewhere, carries the radio that it did.
+        radio = reported_as(state.sources[key // nodes]), state.owners[key % nodes]
+        if radio not in state.delayed:
+            place[key] = each.setdefault(radio, len(each))
+    weighted, carried = solved.weighted, place[keys]
+    weight, residual = weighted.information[ranges], weighted.residual[ranges]
+    return Told(list(each), ranges, carried, *halves(carried, weight, residual, len(each)))
+
+
+def _pulling(problem: Problem, solved: Solved, told: Told) -> list[Delay]:
+    """Radios that have bent the map: by their scores, and what of them the map has taken up."""
+    layout, ranges = problem.layout, told.ranges
+    size, total = layout.length * layout.width, told.told.sum(axis=1)
+    suspicion = told.score.sum(axis=1) ** 2 / np.maximum(total, NOTHING)
+    asked = np.argsort(-suspicion, kind="stable")[:ASKED]
+    if not len(asked):
+        return []
+    place = np.full(len(told.radios) + 1, -1)
+    place[asked] = np.arange(len(asked))
+    right = np.zeros((size + layout.border, 2 * len(asked)))
+    rows = problem.rows.columns[ranges], problem.rows.slab[ranges], solved.linear.jacobian[ranges]
+    weight = solved.weighted.information[ranges]
+    through(right, layout.width, size, *rows, weight, told.half, place[told.carried])
+    of_keyframes = right[:size].reshape(layout.length, layout.width, -1)
+    taken = solved.chain.explained(of_keyframes, right[size:])
+    found = []
+    for i, radio in enumerate(asked.tolist()):
+        own = slice(2 * i, 2 * i + 2)
+        left = np.diag(told.told[radio]) - taken[own, own]
+        found.append(_judged(told.radios[radio], told.score[radio], left))
+    return [one for one in found if one is not None]
+
+
+def _judged(radio: Radio, score: Array, left: Array) -> Delay | None:
+    """How likely a radio is to be off; None where it is no antenna delay that it is off by.
+
+    Args:
+        radio: the radio.
+        score: of its bias in both halves of the time, 2.
+        left: information on both that the map does not take up, 2 × 2.
+    """
+    usual, wide = _variances_m2(radio)
+    information, pulled = max(float(left.sum()), 0.0), float(score.sum())
+    gain, bias_m = 0.5 * pulled**2 / (information + 1.0 / wide), pulled / (information + 1.0 / wide)
+    apart = 0.5 * float(score @ np.linalg.solve(left + np.eye(2) / wide, score))
+    if gain < CONSTANT * apart or abs(bias_m) > FARTHEST * math.sqrt(wide):
+        return None
+    gain -= 0.5 * pulled**2 / (information + 1.0 / usual)
+    return Delay(radio, gain - _rarer(information, usual, wide), bias_m)
+
+
+def _unbelieved(problem: Problem, solved: Solved, told: Told) -> list[Delay]:
+    """Radios most of whose ranges are outliers, and would be none if all of them were off by the same.
+
+    They bend nothing: their scores are nil, and what is to be gained is seen with the map as it is.
+    """
+    rows, known = problem.rows, told.carried >= 0
+    count = np.bincount(told.carried[known], minlength=len(told.radios))
+    good = np.broadcast_to(solved.weighted.good[told.ranges, None], known.shape)
+    believed = np.bincount(told.carried[known], good[known], minlength=len(told.radios))
+    found = []
+    for number in np.flatnonzero(believed < 0.5 * count).tolist():
+        radio, (at, end) = told.radios[number], np.nonzero(told.carried == number)
+        mine = told.ranges[at]
+        residual, sigma, noise = solved.linear.residual[mine], rows.sigma[mine], rows.noise[mine].T
+        bias_m = float(np.median(residual))
+        gain = mixture_cost(residual, sigma, *noise) - mixture_cost(residual - bias_m, sigma, *noise)
+        # As many as may share a wall count for no more than that: see `modes.costs_of`.
+        gain /= np.sqrt(rows.alike[mine])
+        parts = np.bincount(told.half[at, end], gain, minlength=2)
+        usual, wide = _variances_m2(radio)
+        constant = parts.min() > (1.0 - CONSTANT) * parts.mean()
+        if constant and abs(bias_m) < FARTHEST * math.sqrt(wide):
+            odds = float(parts.sum()) - 0.5 * bias_m**2 / wide
+            found.append(Delay(radio, odds - _rarer(float((sigma**-2.0).sum()), usual, wide), bias_m))
+    return found
+
+
+def _variances_m2(radio: Radio) -> tuple[float, float]:
+    """Of the bias of a radio that is like all others of its technology, and of one that is off."""
+    usual = bias_sigma_m(radio[0]) ** 2
+    return usual, usual + physics.DELAY_SIGMA_M**2
+
+
+def _rarer(information: float, usual: float, wide: float) -> float:
+    """How much rarer any one bias is where it may be anything."""
+    return 0.5 * math.log((1.0 + wide * information) / (1.0 + usual * information))

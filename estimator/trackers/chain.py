@@ -1,0 +1,118 @@
+"""A chain of the filter's states, tick after tick, that late readings roll back."""
+
+from bisect import bisect_left
+from collections.abc import Mapping, Sequence
+
+from estimator.estimate import Notice
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.order import end_of_tick, place_of
+from estimator.fusion.tick import fold_tick
+from estimator.inertial.samples import AnyFolded
+from estimator.smoothing.window import keep_up, solve_now
+
+AGES_S, SPACINGS_S = (4.0, 16.0), (0.0, 4.0, 16.0)
+"""Up to each age, and beyond the last, checkpoints are kept so far apart: a reading late by x is folded anew
+over about x, no more."""
+
+MOST = 16
+"""Checkpoints from which on they are thinned: up to five more than are left then, so not after each tick."""
+
+Checkpoint = tuple[int, FusionState]
+
+
+class Chain:
+    """States of the filter, each folded from the one before it and the readings of its own tick.
+
+    Args:
+        checkpoints: ticks with the states after them, at least one, in order.
+
+    Attributes:
+        checkpoints: those that are kept.
+    """
+
+    def __init__(self, checkpoints: Sequence[Checkpoint]) -> None:
+        self.checkpoints = list(checkpoints)
+
+    @property
+    def folded(self) -> int:
+        """The newest tick that is folded."""
+        return self.checkpoints[-1][0]
+
+    @property
+    def state(self) -> FusionState:
+        """The state after it; not to be changed."""
+        return self.checkpoints[-1][1]
+
+    def ends(self) -> list[Checkpoint]:
+        """The oldest and the newest checkpoint: those between are folded anew when they are needed."""
+        return self.checkpoints if len(self.checkpoints) < 3 else [self.checkpoints[0], self.checkpoints[-1]]
+
+    def roll_back(self, tick: int) -> None:
+        """Forget the states that readings of a tick would change."""
+        while self.checkpoints[-1][0] >= tick:
+            self.checkpoints.pop()
+
+    def extend(
+        self,
+        ticks: Sequence[int],
+        readings: Mapping[int, Sequence[AnyFolded]],
+        notices: dict[int, list[Notice]],
+    ) -> None:
+        """Fold ticks, and solve the window wherever it is due.
+
+        Args:
+            ticks: those after the newest one that is folded, in order.
+            readings: of each tick.
+            notices: what was noticed in each tick; takes those of these ticks.
+        """
+        for tick in ticks:
+            after = self.state.copy()
+            fold_tick(after, end_of_tick(tick), sorted(readings[tick], key=place_of))
+            keep_up(after, end_of_tick(tick))
+            notices[tick] = list(after.notices)
+            self.checkpoints.append((tick, after))
+            if len(self.checkpoints) > MOST:
+                self._thin()
+
+    def _thin(self) -> None:
+        """Leave checkpoints out as they age; the two newest always stay."""
+        now, before = end_of_tick(self.folded), (0.0, 0.0)
+        thinned: list[Checkpoint] = []
+        for i, checkpoint in enumerate(self.checkpoints[:-2]):
+            end = end_of_tick(checkpoint[0])
+            spacing = SPACINGS_S[bisect_left(AGES_S, now - end)]
+            if spacing == 0.0:
+                thinned += self.checkpoints[i:]
+                break
+            bucket = (spacing, end // spacing)
+            # The oldest of each bucket stays, so that what has grown old enough to be thinned is not lost
+            # again.
+            if bucket != before:
+                before = bucket
+                thinned.append(checkpoint)
+        else:
+            thinned += self.checkpoints[-2:]
+        self.checkpoints = thinned
+
+
+def hurried(
+    before: FusionState,
+    ticks: Sequence[int],
+    readings: Mapping[int, Sequence[AnyFolded]],
+    notices: dict[int, list[Notice]],
+) -> Chain:
+    """A chain that goes on after ticks which were folded with one solution of the window, after the last.
+
+    Args:
+        before: the state before them.
+        ticks: they are, at least one, in order.
+        readings: of each tick.
+        notices: what was noticed in each tick; takes those of these ticks.
+    """
+    state = before.copy()
+    for tick in ticks:
+        fold_tick(state, end_of_tick(tick), sorted(readings[tick], key=place_of))
+        notices[tick] = list(state.notices)
+    solve_now(state, end_of_tick(ticks[-1]))
+    notices[ticks[-1]] = list(state.notices)
+    return Chain([(ticks[-1], state)])

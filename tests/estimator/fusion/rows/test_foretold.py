@@ -1,0 +1,60 @@
+"""What a Kirchhoff state foretells of ranges before it takes them in."""
+
+import numpy as np
+
+from estimator.fusion.learned import rival
+from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.rows.foretold import foretell
+from estimator.fusion.rows.rows import Row, columns_of, linearise, table_of
+from estimator.graph.dense import Array
+
+UNIT, BREADCRUMB, OTHER_UNIT, TECHNOLOGY = 0, 3, 6, 9
+X = np.array([1.0, 2.0, 0.0, 8.0, -3.0, 0.5, 20.0, 0.0, 0.0, 0.2, 0.01])
+
+
+def ranged(a: int, b: int, link: int = 0) -> Row:
+    return Row(RANGE, a, 9.0, 0.2, 0.1, 1.5, 3.0, 0.3, b, TECHNOLOGY, link=link, b_e=5.0)
+
+
+def table(*rows: Row) -> Array:
+    return table_of({}, [], np.array(rows, dtype=np.float64))
+
+
+def information() -> Array:
+    half = np.random.default_rng(5).normal(0.0, 1.0, (len(X), len(X)))
+    return half @ half.T + np.eye(len(X))
+
+
+def test_variances_are_those_of_the_covariance() -> None:
+    rows, covariance = table(ranged(UNIT, BREADCRUMB)), np.linalg.inv(information())
+    told, own = foretell(rows, np.array([7.0]), np.array([UNIT]), information(), X)
+    columns, jacobian, residual = columns_of(rows), np.empty((1, 8)), np.empty(1)
+    linearise(rows, columns, X, jacobian, residual)
+    slope = np.zeros(len(X))
+    slope[columns[0]] = jacobian[0]
+    np.testing.assert_allclose(told[0, rival.UNSURE], slope @ covariance @ slope)
+    np.testing.assert_allclose(told[0, rival.OFF], residual[0])
+    slope[:3] = 0.0
+    np.testing.assert_allclose(told[0, rival.REST], slope @ covariance @ slope)
+    east, north, both = own[0].tolist()
+    np.testing.assert_allclose([east, north], np.diag(covariance)[:2])
+    np.testing.assert_allclose(0.5 * (both - east - north), covariance[0, 1])
+
+
+def test_it_is_told_from_the_other_end_whichever_that_is() -> None:
+    for row in (ranged(UNIT, BREADCRUMB)._replace(b_e=0.0), ranged(BREADCRUMB, UNIT)._replace(b_e=0.0)):
+        told, _ = foretell(table(row), np.array([7.0]), np.array([UNIT]), information(), X)
+        np.testing.assert_allclose(told[0, [rival.EAST, rival.NORTH, rival.UP]], [8.0, -3.0, -0.5])
+
+
+def test_of_ranges_between_two_units_and_of_none_nothing_is_told() -> None:
+    rows = table(ranged(UNIT, OTHER_UNIT), ranged(-1, BREADCRUMB), ranged(UNIT, BREADCRUMB, link=-1))
+    told, _ = foretell(rows, np.arange(3.0), np.array([UNIT, OTHER_UNIT]), information(), X)
+    assert not len(told)
+
+
+def test_ranges_come_in_order_of_epoch_each_with_its_unit() -> None:
+    rows = table(ranged(UNIT, BREADCRUMB, 1), ranged(BREADCRUMB, OTHER_UNIT, 2), ranged(UNIT, -1, 3))
+    told, _ = foretell(rows, np.array([3.0, 1.0, 2.0]), np.array([UNIT, OTHER_UNIT]), information(), X)
+    assert told[:, rival.LINK].tolist() == [2.0, 3.0, 1.0]
+    assert told[:, rival.UNIT].tolist() == [1.0, 0.0, 0.0]
