@@ -15,9 +15,12 @@ COPY requirements.txt ./
 COPY --from=build /src/dist/*.whl ./
 RUN pip install --no-cache-dir --require-hashes --requirement requirements.txt \
     && pip install --no-cache-dir --no-deps ./*.whl \
-    && python -m estimator.warm \
-    && useradd --create-home firethread && mkdir /data && chown firethread /data
+    && useradd --create-home firethread && mkdir /data /compiled && chown firethread /data /compiled
 USER firethread
+# Numba looks for what it has compiled where its user may write, which beside the sources is root only: who runs warms
+# it, in a folder named to both. On another kind of processor it compiles anew, and keeps that here too.
+ENV NUMBA_CACHE_DIR=/compiled
+RUN python -m estimator.warm
 VOLUME /data
 EXPOSE 8000 7070
 ENTRYPOINT ["firethread"]

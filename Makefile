@@ -6,14 +6,20 @@ BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: setup screen browser run test check format types lock bench clean
+# What does not wait for each other runs side by side: the screen is built while numba compiles.
+MAKEFLAGS += --jobs=2
 
-setup: .venv/.installed screen
+.PHONY: setup screen browser run test check check-python check-screen test-screen format types lock bench clean
+
+setup: .venv/.compiled screen
 
 .venv/.installed: requirements-dev.txt pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements-dev.txt
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	touch $@
+
+.venv/.compiled: .venv/.installed
 	$(BIN)/python -m estimator.warm
 	touch $@
 
@@ -35,17 +41,24 @@ browser:
 run: setup
 	$(BIN)/firethread serve --data .data --open --demo
 
-test: setup browser check
-	cd frontend && npm test --silent
-	$(BIN)/pytest
+# A worker for each core; worksteal keeps most modules, and the servers that they start, on one of them.
+test: setup browser check test-screen
+	$(BIN)/pytest --numprocesses=auto --dist=worksteal
 
-check: setup
+check: check-python check-screen
+
+check-python: setup
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/firethread openapi | cmp - frontend/openapi.json || { echo "the API has changed: run 'make types'"; exit 1; }
+
+check-screen: setup
 	cd frontend && npm run check --silent
+
+test-screen: setup
+	cd frontend && npm test --silent
 
 format: setup
 	$(BIN)/ruff check --fix .

@@ -1,5 +1,9 @@
 """Whether this process lives, whether it can do its work, and its metrics."""
 
+import asyncio
+import shutil
+from pathlib import Path
+
 import prometheus_client
 import sqlalchemy as sa
 from fastapi import APIRouter
@@ -8,7 +12,15 @@ from starlette.responses import Response
 
 from backend.coordination.web_link import WebLink
 from backend.errors import Unavailable
+from backend.log.base import LogUnwritable
+from backend.log.engine import RETRY_UNWRITABLE_S, reading
 from backend.problems import openapi_responses
+
+ANSWER_WITHIN_S = 3.0
+"""Whoever asks whether this process is ready gives up sooner or later; a database may not answer at all."""
+
+LEAST_FREE_BYTES = 32 * 1024 * 1024
+"""The WAL between two checkpoints and a largest group: with less room the next batches may be refused."""
 
 
 class Health(BaseModel):
@@ -21,7 +33,7 @@ class Readiness(BaseModel):
     """What this process needs for its work.
 
     Attributes:
-        log: the database answers.
+        log: the database answers, and its disk has room, where it is a file here.
         worker: an estimator worker is connected and ready to compute; it takes seconds to begin. Without one
             telemetry is still taken, and dots go stale.
     """
@@ -38,13 +50,17 @@ def health_router(engine: sa.Engine, workers: WebLink) -> APIRouter:
     async def healthz() -> Health:
         return Health()
 
+    asking: asyncio.Task[None] | None = None
+
     @router.get("/readyz", summary="Can it do its work?", responses=openapi_responses(503))
-    def readyz() -> Readiness:
-        try:
-            with engine.connect() as connection:
-                connection.execute(sa.text("SELECT 1"))
-        except sa.exc.DBAPIError as error:
-            raise Unavailable(f"the database does not answer: {error.__cause__ or error}") from error
+    async def readyz() -> Readiness:
+        nonlocal asking
+        if asking is None or asking.done():  # each question that hangs would hold a thread
+            asking = asyncio.create_task(asyncio.to_thread(_ask, engine))
+        done, _ = await asyncio.wait({asking}, timeout=ANSWER_WITHIN_S)
+        if not done:
+            raise Unavailable(f"The database has not answered within {ANSWER_WITHIN_S:g} s.")
+        asking.result()
         return Readiness(log=True, worker=workers.connected)
 
     @router.get("/metrics", summary="Metrics for Prometheus", response_class=Response)
@@ -52,3 +68,23 @@ def health_router(engine: sa.Engine, workers: WebLink) -> APIRouter:
         return Response(prometheus_client.generate_latest(), media_type=prometheus_client.CONTENT_TYPE_LATEST)
 
     return router
+
+
+def _ask(engine: sa.Engine) -> None:
+    """Ask the database for something, and its disk for room.
+
+    Raises:
+        LogUnreadable: it failed.
+        LogUnwritable: there is no room for more telemetry.
+    """
+    with reading(engine) as connection:
+        connection.execute(sa.text("SELECT 1"))
+    if engine.dialect.name != "sqlite" or not engine.url.database:
+        return
+    free = shutil.disk_usage(Path(engine.url.database).parent).free
+    if free < LEAST_FREE_BYTES:
+        raise LogUnwritable(
+            f"The disk of the log has {free // 1024} kB left, less than {LEAST_FREE_BYTES // 1024} kB: "
+            "telemetry is refused, or will be soon. Make room.",
+            retry_after_s=RETRY_UNWRITABLE_S,
+        )

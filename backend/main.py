@@ -10,7 +10,9 @@ from fastapi import FastAPI
 from backend import api_docs, openapi, problems
 from backend.authentication import Authentication, session_router
 from backend.body_limit import BodyLimit
+from backend.compression import Compression
 from backend.coordination.web_link import WebLink
+from backend.head_requests import HeadRequests
 from backend.health import health_router
 from backend.incidents.routes import incidents_router
 from backend.ingest.log_route import log_router
@@ -100,6 +102,8 @@ def build_app(settings: Settings, *, token: str | None, link: socket.socket, lin
     openapi.install(app)
     api_docs.install(app)
     app.mount("/", Screen(), name="screen")
+    app.add_middleware(Compression)
+    app.add_middleware(HeadRequests)
     app.add_middleware(BodyLimit, telemetry=app.state.telemetry)
     app.add_middleware(Authentication, token=token)
     return app

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.responses import PlainTextResponse, Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
@@ -19,21 +20,25 @@ CONTENT_SECURITY_POLICY = (
 
 
 class Screen(StaticFiles):
-    """Static files of the built front end; the browser keeps those with a hash in their name."""
+    """Static files of the built front end, compressed; the browser keeps those with a hash in their name."""
 
     def __init__(self) -> None:
         super().__init__(directory=FOLDER, html=True, check_dir=False)
+        self._compressed = GZipMiddleware(super().__call__, compresslevel=6)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer with a file; a socket that no route of the API takes ends here, as not found."""
         if scope["type"] == "websocket":
             await deny(WebSocket(scope, receive, send), NotFound(f"there is no socket at {scope['path']}"))
             return
-        await super().__call__(scope, receive, send)
+        await self._compressed(scope, receive, send)
+
+    async def check_config(self) -> None:
+        """Nothing: a screen that is not built yet is answered below, page by page."""
 
     async def get_response(self, path: str, scope: Scope) -> Response:
-        """The file at a path, or a line that says how to build the screen."""
-        if not (FOLDER / "index.html").is_file():
+        """The file at a path; instead of the first page of a screen that is not built, how to build it."""
+        if path in {".", "index.html"} and not (FOLDER / "index.html").is_file():
             return PlainTextResponse("The screen is not built yet: run `make screen`.\n", 503)
         response = await super().get_response(path, scope)
         response.headers["Content-Security-Policy"] = CONTENT_SECURITY_POLICY

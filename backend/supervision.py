@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Mapping, Sequence
 
 import structlog
@@ -83,5 +84,8 @@ def end_with_parent() -> None:
         while sys.stdin.buffer.read(4096):
             pass
         os.kill(os.getpid(), signal.SIGTERM)
+        # A worker that still compiles would hear it minutes later, beside the one that takes its place.
+        time.sleep(GRACE_S)
+        os.kill(os.getpid(), signal.SIGKILL)
 
     threading.Thread(target=watch, name="end with parent", daemon=True).start()

@@ -3,7 +3,9 @@
 import contextlib
 import os
 import queue
+import secrets
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -15,6 +17,20 @@ from typing import Self
 import httpx2
 
 READY_WITHIN_S = 60.0
+ANSWERED_WITHIN_S = 70.0
+"""The server answers within 60 s, with a refusal if need be."""
+
+
+def free_port() -> int:
+    """A free port that nobody else is given meanwhile, not even while the server on it is down.
+
+    The kernel gives what asks for port 0, and every outgoing connection, one from 32768 on.
+    """
+    while True:
+        port = 20_000 + secrets.randbelow(12_768)
+        with contextlib.suppress(OSError), socket.socket() as probe:
+            probe.bind(("127.0.0.1", port))
+            return port
 
 
 class Server:
@@ -32,7 +48,7 @@ class Server:
         self.data = data
         self.options = list(options)
         self.log = log or data.parent / f"{data.name}.stderr"
-        self.port = 0
+        self.port = free_port()
         self.process: subprocess.Popen[str] | None = None
 
     @property
@@ -50,7 +66,6 @@ class Server:
         if not line.startswith("ready "):
             self.stop()
             raise AssertionError(f"the server did not start: {line!r}\n{self.log.read_text()[-3000:]}")
-        self.port = int(line.rsplit(":", 1)[1])
         return self
 
     def until_it_computes(self) -> Self:
@@ -129,7 +144,9 @@ class Post:
     def __init__(self, url: str) -> None:
         # No connection is kept: nothing is left open where a test only looks in.
         self.http = httpx2.Client(
-            base_url=url + "/api/v1", timeout=70.0, limits=httpx2.Limits(max_keepalive_connections=0)
+            base_url=url + "/api/v1",
+            timeout=ANSWERED_WITHIN_S,
+            limits=httpx2.Limits(max_keepalive_connections=0),
         )
 
     def open_incident(self, name: str = "test", clock: str = "recorded", **fields: object) -> str:

@@ -65,6 +65,8 @@ class Picture(msgspec.Struct, frozen=True, tag="picture"):
         record: the picture, encoded by `backend.live.record`.
         row: newest second whose row is final, stored or about to be; None: all of them are stored.
         failed: the estimator could not go on; the picture stands still.
+        since_t: since when it has been shown: what was shown before stands in rows, Unix seconds; None: it is
+            not known.
     """
 
     incident: str
@@ -72,16 +74,21 @@ class Picture(msgspec.Struct, frozen=True, tag="picture"):
     record: bytes
     row: int | None = None
     failed: bool = False
+    since_t: float | None = None
+
+
+class Alive(msgspec.Struct, frozen=True, tag="alive"):
+    """The worker goes on, though it may have nothing to tell."""
 
 
 ToWorker = Wake | Query
-ToWeb = Answer | Picture
+ToWeb = Answer | Picture | Alive
 
 
 class WorkerSide(Protocol):
     """What the worker sees of the link."""
 
-    def publish(self, message: ToWeb) -> None:
+    def publish(self, message: Answer | Picture) -> None:
         """Send if connected; a picture that cannot be sent is superseded by the next."""
 
     async def receive(self, timeout_s: float) -> list[ToWorker]:

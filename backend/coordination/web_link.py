@@ -11,7 +11,7 @@ import msgspec
 import structlog
 from prometheus_client import Counter, Gauge
 
-from backend.coordination.base import Answer, Picture, Query, Wake
+from backend.coordination.base import Alive, Answer, Picture, Query, Wake
 from backend.coordination.framing import (
     MAX_HELLO_BYTES,
     Malformed,
@@ -24,6 +24,10 @@ from backend.coordination.outbox import Outbox
 from backend.errors import TooSlow, Unavailable
 
 HELLO_WITHIN_S = 5.0
+
+SILENT_AFTER_S = 10.0
+"""A worker that has told nothing for so long, not even that it is alive, is gone: it hangs, or its machine
+has vanished without a word. One whose compiled loops hold its interpreter is silent for seconds."""
 
 log = structlog.get_logger(__name__)
 
@@ -119,6 +123,8 @@ class WebLink:
                 await self._talk(worker, reader, writer)
         except (asyncio.CancelledError, asyncio.IncompleteReadError, ConnectionError):
             pass  # the worker has gone, or we are being closed: pictures age by themselves
+        except TimeoutError:
+            log.error("a worker has fallen silent, its connection is closed")
         except (Malformed, msgspec.DecodeError) as error:
             log.error("a worker sent what is no message: are both of the same version?", error=str(error))
         finally:
@@ -144,10 +150,11 @@ class WebLink:
         sending = asyncio.create_task(worker.outbox.send_to(writer))
         try:
             while True:
-                message = decode_to_web(await read_frame(reader))
+                async with asyncio.timeout(SILENT_AFTER_S):
+                    message = decode_to_web(await read_frame(reader))
                 if isinstance(message, Answer):
                     self._resolve(message)
-                else:
+                elif not isinstance(message, Alive):
                     _pictures.inc()
                     self._followed_by[message.incident] = worker
                     await self._tell(message)

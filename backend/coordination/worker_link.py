@@ -9,13 +9,14 @@ from collections.abc import Callable
 import msgspec
 import structlog
 
-from backend.coordination.base import Picture, Query, ToWeb, ToWorker
+from backend.coordination.base import Alive, Answer, Picture, Query, ToWorker
 from backend.coordination.framing import Hello, Malformed, decode_to_worker, framed, read_frame
 from backend.coordination.outbox import Outbox
 
 FIRST_PAUSE_S = 0.05
 LONGEST_PAUSE_S = 5.0
 CONNECT_WITHIN_S = 5.0
+ALIVE_EVERY_S = 1.0
 MAX_RECEIVED = 10_000
 """Messages that may wait for the worker; beyond, the oldest is dropped: it reads the log in any case."""
 
@@ -56,7 +57,7 @@ class WorkerLink:
             with contextlib.suppress(asyncio.CancelledError):
                 await self._task
 
-    def publish(self, message: ToWeb) -> None:
+    def publish(self, message: Answer | Picture) -> None:
         """Send if connected; a picture that cannot be sent in time is superseded by the next."""
         if not self._connected:
             return
@@ -94,22 +95,27 @@ class WorkerLink:
         async with asyncio.timeout(CONNECT_WITHIN_S):
             reader, writer = await asyncio.open_connection(host, port)
         _notice_a_dead_peer(writer)
-        sending: asyncio.Task[None] | None = None
+        tasks: list[asyncio.Task[None]] = []
         try:
             writer.write(framed(self._hello))
             self._outbox.clear()
             self._connected = True
-            sending = asyncio.create_task(self._outbox.send_to(writer))
+            tasks = [asyncio.create_task(self._outbox.send_to(writer)), asyncio.create_task(self._beat())]
             self._on_connect()
             while True:
                 self._take(decode_to_worker(await read_frame(reader)))
         finally:
             self._connected = False
-            if sending is not None:
-                sending.cancel()
+            for task in tasks:
+                task.cancel()
                 with contextlib.suppress(asyncio.CancelledError, ConnectionError):
-                    await sending
+                    await task
             writer.close()
+
+    async def _beat(self) -> None:
+        while True:
+            self._outbox.put("alive", framed(Alive()))
+            await asyncio.sleep(ALIVE_EVERY_S)
 
     def _take(self, message: ToWorker) -> None:
         key = message.number if isinstance(message, Query) else message.incident

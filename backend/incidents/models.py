@@ -1,5 +1,7 @@
 """What is sent to create and to change an incident."""
 
+import unicodedata
+from itertools import pairwise
 from typing import Annotated
 
 from pydantic import AfterValidator, Field
@@ -10,22 +12,42 @@ from backend.log.incident import (
     IncidentSettings,
     LagS,
     Level,
-    Name,
     Origin,
     State,
     TrackerName,
     Value,
 )
+from backend.log.incident import Name as StoredName
+
+BLANK_LETTERS = "\u115f\u1160\u2800\u3164\uffa0"
+"""Fillers that Unicode counts among letters and symbols, and that show nothing."""
 
 
-def _distinct(levels: list[Level]) -> list[Level]:
+def _seen(name: str) -> str:
+    if not any(unicodedata.category(c)[0] in "LNPS" and c not in BLANK_LETTERS for c in name):
+        raise ValueError("nothing of this name can be seen: give it letters or digits")
+    return name
+
+
+def _storeys(levels: list[Level]) -> list[Level]:
     numbers = [level.level for level in levels]
     if len(set(numbers)) < len(numbers):
         raise ValueError("two levels have the same number: give each storey its own")
-    return sorted(levels, key=lambda level: level.level)
+    in_order = sorted(levels, key=lambda level: level.level)
+    for below, above in pairwise(in_order):
+        if above.up_m < below.up_m:
+            raise ValueError(
+                f"level {above.level} is at {above.up_m:g} m, below level {below.level} at {below.up_m:g} m: "
+                "give a storey with a larger number a larger up_m, or change the numbers"
+            )
+    for level in in_order:
+        _seen(level.name)
+    return in_order
 
 
-Levels = Annotated[list[Level], Field(max_length=100), AfterValidator(_distinct)]
+# What is stored may be older than these: a name or levels that were taken once can still be read.
+Name = Annotated[StoredName, AfterValidator(_seen)]
+Levels = Annotated[list[Level], Field(max_length=100), AfterValidator(_storeys)]
 
 
 class NewIncident(Value):

@@ -5,11 +5,14 @@ from typing import Protocol
 
 import msgspec
 
-from backend.live.frame import DeltaMessage, Frame, FrameMessage, HeartbeatMessage, message
+from backend.live.frame import DeltaMessage, Frame, FrameMessage, FrameNotice, HeartbeatMessage, message
 from backend.live.presentation import now_of, present
 from backend.live.push_protocol import text_frame
 from backend.live.record import EMPTY, PictureRecord, decode
 from backend.log.incident import Incident
+
+BEHIND_AFTER_S = 5.0
+"""An entry of the log that is not in the picture for longer is told of: an alarm may be in it."""
 
 _encode = msgspec.json.Encoder().encode
 
@@ -19,6 +22,20 @@ class Connection(Protocol):
 
     def push(self, frame: bytes) -> bool:
         """Write a ready-made frame; False if the last one has not been taken yet."""
+
+
+class Waiting(msgspec.Struct, frozen=True):
+    """What the log holds and the picture does not.
+
+    Attributes:
+        oldest: the first such entry.
+        since_t: when it came, Unix seconds.
+        newest: the last such entry.
+    """
+
+    oldest: int
+    since_t: float
+    newest: int
 
 
 class Screen:
@@ -51,16 +68,20 @@ class Channel:
         incident: as newly known.
         seq: newest log entry in the picture.
         row: newest second whose row is final, stored or about to be; None: all of them are stored.
+        since_t: since when the picture has been shown, Unix seconds; None: it is not known.
         screens: who sees it.
         shown_t: when it was last presented, Unix seconds.
+        waiting: what the log was last seen to hold that the picture did not.
     """
 
     def __init__(self, incident: Incident) -> None:
         self.incident = incident
         self.seq = 0
         self.row: int | None = None
+        self.since_t: float | None = None
         self.screens: set[Screen] = set()
         self.shown_t = 0.0
+        self.waiting: Waiting | None = None
         self._encoded: bytes | None = None
         self._record: PictureRecord = EMPTY
         self._version = 0
@@ -69,17 +90,18 @@ class Channel:
         self._whole: bytes | None = None
         self._folded: list[tuple[int, asyncio.Future[None]]] = []
 
-    def take(self, seq: int, encoded: bytes, row: int | None = None) -> bool:
+    def take(self, seq: int, encoded: bytes, row: int | None = None, since_t: float | None = None) -> bool:
         """Take a picture; False if a newer one is here already.
 
         Args:
             seq: newest log entry in it.
             encoded: the record.
             row: newest second whose row is final, stored or about to be.
+            since_t: since when it has been shown, Unix seconds.
         """
         if seq < self.seq:
             return False
-        self.seq, self.row = seq, row
+        self.seq, self.row, self.since_t = seq, row, since_t
         self._encoded = encoded
         for wanted, waiting in self._folded:
             if wanted <= seq and not waiting.done():
@@ -119,7 +141,29 @@ class Channel:
 
     def frame(self, server_t: float) -> Frame:
         """The frame of this moment."""
-        return present(self.record, self.seq, self.now(server_t), self.incident)
+        frame = present(self.record, self.seq, self.now(server_t), self.incident)
+        if not self.behind(server_t):
+            return frame
+        text = "What was last reported is not in this picture yet: the worker is behind, or there is none."
+        notice = FrameNotice(code="estimator_behind", t=frame.t, text=text, node=None)
+        return msgspec.structs.replace(frame, notices=(*frame.notices, notice))
+
+    def behind(self, server_t: float) -> bool:
+        """Whether an entry of the log has not been in the picture for too long."""
+        waiting = self.waiting
+        return (
+            waiting is not None and self.seq < waiting.newest and server_t - waiting.since_t > BEHIND_AFTER_S
+        )
+
+    def past_frame(self, t: float) -> Frame | None:
+        """The frame of a moment since which nothing has come; None where something may have.
+
+        Args:
+            t: the moment, Unix seconds.
+        """
+        if self.since_t is None or t < self.since_t:
+            return None
+        return present(self.record, self.seq, t, self.incident)
 
     def show(self, server_t: float) -> None:
         """Present the picture anew, and give every screen what has changed."""

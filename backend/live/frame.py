@@ -34,6 +34,7 @@ class FrameNode(msgspec.Struct, frozen=True, kw_only=True):
         temperature_c: temperature at the unit (°C).
         motionless_s: for how long it had not moved at its newest status (s).
         moved: it was noticed to have been moved in the last ten minutes.
+        retire_reason: why it has left, where that was said.
     """
 
     node: str
@@ -54,6 +55,7 @@ class FrameNode(msgspec.Struct, frozen=True, kw_only=True):
     temperature_c: float | None
     motionless_s: float | None
     moved: bool
+    retire_reason: str | None
 
 
 class FrameAlarm(msgspec.Struct, frozen=True, kw_only=True):

@@ -9,7 +9,7 @@ from prometheus_client import Gauge
 
 from backend.coordination.base import Picture
 from backend.errors import Unavailable
-from backend.live.channel import Channel, Connection, Screen
+from backend.live.channel import Channel, Connection, Screen, Waiting
 from backend.live.record import readable
 from backend.log.base import LogReader
 from backend.log.incident import Incident
@@ -23,6 +23,9 @@ AGE_AFTER_S = 0.4
 
 REFRESH_S = 2.0
 """Settings and levels of watched incidents are read again so often."""
+
+READ_WITHIN_S = 2.0
+"""A database that takes longer is away: what is known holds meanwhile."""
 
 KEEP_S = 300.0
 """A picture that nobody watches, and of which nothing is heard, is left to the database after so long."""
@@ -54,19 +57,19 @@ class Hub:
         self._incidents = incidents
         self._channels: dict[str, Channel] = {}
         self._newest: dict[str, tuple[float, Picture]] = {}
-        self._refreshed_at = 0.0
         self.failing: set[str] = set()
-        self._task: asyncio.Task[None] | None = None
+        self._tasks: list[asyncio.Task[None]] = []
 
     def start(self) -> None:
         """Begin to age and to beat."""
-        self._task = asyncio.create_task(self._beat(), name="hub")
+        # Apart, since a database may take long to answer, and dots age meanwhile.
+        self._tasks = [asyncio.create_task(chore(), name="hub") for chore in (self._beat, self._refresh)]
 
     async def stop(self) -> None:
         """Stop."""
-        if self._task is not None:
-            self._task.cancel()
-            await asyncio.gather(self._task, return_exceptions=True)
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
 
     def take(self, picture: Picture) -> None:
         """Take a picture from the worker, and show it."""
@@ -77,23 +80,40 @@ class Hub:
         (self.failing.add if picture.failed else self.failing.discard)(picture.incident)
         _failing.set(len(self.failing))
         channel = self._channels.get(picture.incident)
-        if channel is not None and channel.take(picture.seq, picture.record, picture.row) and channel.screens:
+        if channel is not None and _give(channel, picture) and channel.screens:
             channel.show(time.time())
 
     async def channel(self, incident: str) -> Channel:
         """The channel of an incident, with its settings as they are now.
 
+        While the database is away, one that is held already keeps the settings that it has.
+
         Raises:
             NotFound: there is no such incident.
-            LogUnreadable: the database failed.
+            Unavailable: the database failed, and nothing is held of the incident.
         """
+        channel = self._channels.get(incident)
+        try:
+            async with asyncio.timeout(None if channel is None else READ_WITHIN_S):
+                return await self._read_channel(incident)
+        except (Unavailable, TimeoutError):
+            if channel is None:
+                raise
+            return channel
+
+    async def _read_channel(self, incident: str) -> Channel:
         known = await asyncio.to_thread(self._incidents.get, incident)
         channel = self._channels.get(incident)
         if channel is None:
             channel = await self._begin(known)
         channel.incident = known
         await self._read_on(channel)
-        return channel
+        await self._look_what_waits(channel)
+        # Nobody watched it meanwhile: it may have been let go of, and pictures pass it by.
+        kept = self._channels.setdefault(incident, channel)
+        if incident in self._newest:
+            _give(kept, self._newest[incident][1])
+        return kept
 
     async def stored(self, channel: Channel, t: float) -> None:
         """Wait until the rows up to a moment are stored, as far as they are final; not for long.
@@ -122,7 +142,7 @@ class Hub:
 
         Raises:
             NotFound: there is no such incident.
-            LogUnreadable: the database failed.
+            Unavailable: the database failed, and nothing is held of the incident.
         """
         channel = await self.channel(incident)
         screen = Screen(connection)
@@ -145,8 +165,7 @@ class Hub:
             snapshot = await asyncio.to_thread(self._reader.snapshot, known.id)
             channel.seq = max(channel.seq, 0 if snapshot is None else snapshot.seq)
         if known.id in self._newest:
-            newest = self._newest[known.id][1]
-            channel.take(newest.seq, newest.record, newest.row)
+            _give(channel, self._newest[known.id][1])
         return self._channels.setdefault(known.id, channel)
 
     async def _read_on(self, channel: Channel) -> None:
@@ -157,37 +176,54 @@ class Hub:
         if row is not None and row.seq > channel.seq and readable(row.record):
             channel.take(row.seq, row.record)
 
+    async def _look_what_waits(self, channel: Channel) -> None:
+        """Note which entries of the log are not in the picture; nothing comes to a closed incident."""
+        incident, seq, waiting = channel.incident, channel.seq, channel.waiting
+        if seq >= incident.last_seq or incident.state == "closed":
+            channel.waiting = None
+            return
+        if waiting is not None and waiting.oldest > seq:
+            channel.waiting = Waiting(waiting.oldest, waiting.since_t, incident.last_seq)
+            return
+        oldest = await asyncio.to_thread(lambda: next(self._reader.batches(incident.id, seq, 1), None))
+        if oldest is not None:
+            channel.waiting = Waiting(oldest.seq, oldest.received, incident.last_seq)
+
     async def _beat(self) -> None:
         while True:
             await asyncio.sleep(BEAT_S)
             try:
-                await self._beat_once()
+                self._beat_once()
             except Exception:
                 # Every screen would take the silence for a lost server.
                 log.exception("a heartbeat failed")
 
-    async def _beat_once(self) -> None:
-        watched = [channel for channel in self._channels.values() if channel.busy]
-        if time.monotonic() - self._refreshed_at >= REFRESH_S:
-            self._refreshed_at = time.monotonic()
-            await self._refresh(watched)
-            self._forget()
-        for channel in watched:
+    def _beat_once(self) -> None:
+        self._forget()
+        for channel in [channel for channel in self._channels.values() if channel.busy]:
             now = time.time()
             if abs(now - channel.shown_t) >= AGE_AFTER_S:
                 channel.show(now)
             channel.beat(now)
 
-    async def _refresh(self, watched: list[Channel]) -> None:
+    async def _refresh(self) -> None:
+        while True:
+            await asyncio.sleep(REFRESH_S)
+            try:
+                await self._refresh_once([channel for channel in self._channels.values() if channel.busy])
+            except Unavailable as error:
+                log.warning("settings cannot be read, the last ones hold", error=str(error))
+            except Exception:
+                log.exception("settings cannot be read, the last ones hold")
+
+    async def _refresh_once(self, watched: list[Channel]) -> None:
         def read() -> list[Incident]:
             return [self._incidents.get(channel.incident.id) for channel in watched]
 
-        try:
-            for channel, incident in zip(watched, await asyncio.to_thread(read), strict=True):
-                channel.incident = incident
-                await self._read_on(channel)
-        except Unavailable as error:
-            log.warning("settings cannot be read, the last ones hold", error=str(error))
+        for channel, incident in zip(watched, await asyncio.to_thread(read), strict=True):
+            channel.incident = incident
+            await self._read_on(channel)
+            await self._look_what_waits(channel)
 
     def _forget(self) -> None:
         """Let go of pictures that nobody watches and of which nothing was heard for a while."""
@@ -195,3 +231,8 @@ class Hub:
         self._newest = {i: (at, picture) for i, (at, picture) in self._newest.items() if at > old}
         self._channels = {i: c for i, c in self._channels.items() if c.busy or i in self._newest}
         _watched.set(len(self._channels))
+
+
+def _give(channel: Channel, picture: Picture) -> bool:
+    """Have a channel take a worker's picture; False if it has a newer one."""
+    return channel.take(picture.seq, picture.record, picture.row, picture.since_t)

@@ -109,6 +109,7 @@ def present_node(known: RecordNode, now: float, settings: IncidentSettings, floo
         temperature_c=known.temperature_c,
         motionless_s=known.motionless_s,
         moved=known.moved_t is not None and now - known.moved_t < MOVED_SHOWN_S,
+        retire_reason=known.retire_reason,
     )
 
 

@@ -36,6 +36,7 @@ class RecordNode(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
         temperature_c: temperature at the unit (°C).
         motionless_s: for how long it had not moved at its newest status (s).
         moved_t: when it was last noticed to have been moved, Unix seconds.
+        retire_reason: why it has left, where that was said.
     """
 
     node: str
@@ -54,6 +55,7 @@ class RecordNode(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     temperature_c: float | None = None
     motionless_s: float | None = None
     moved_t: float | None = None
+    retire_reason: str | None = None
 
 
 class RecordAlarm(msgspec.Struct, frozen=True, kw_only=True, array_like=True):

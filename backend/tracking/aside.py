@@ -133,8 +133,6 @@ def relative_from_state(database_url: str, head: Head, a: str, b: str) -> Relati
         snapshot = SqlLogReader(engine).snapshot(head.incident)
     finally:
         engine.dispose()
-    if snapshot is None and head.last_seq == 0:
-        raise NotFound(f"No reading has named {a!r} or {b!r} yet.")
     if snapshot is None:
         raise Unavailable("Nothing of this incident has been estimated yet: start an estimator worker.")
     return _relative(IncidentFold.restore(snapshot.state, head.tracker, head.settings, head.live), a, b)

@@ -9,7 +9,7 @@ from backend.live.record import PictureRecord, RecordAlarm, RecordNode, RecordNo
 from backend.tracking.alarms import AlarmEntry
 from estimator.estimate import NodeEstimate, Notice
 from estimator.fusion.tick import names_of
-from estimator.measurements import Alarm, AnyReading, Node, Status
+from estimator.measurements import Alarm, AnyReading, Node, Retire, Status
 from estimator.measurements.status import AlarmKind
 
 NOTICES_KEPT = 32
@@ -49,12 +49,14 @@ class Board(msgspec.Struct):
         alarms: alarms of each node, by kind.
         notices: the newest notice of each code and node, oldest first.
         came_t: when those were heard of last of whom readings told before their time, Unix seconds.
+        retired: when each node was last retired, Unix seconds, and why, where that was said.
     """
 
     nodes: dict[str, NodeBoard] = msgspec.field(default_factory=dict)
     alarms: dict[str, dict[AlarmKind, AlarmEntry]] = msgspec.field(default_factory=dict)
     notices: list[RecordNotice] = msgspec.field(default_factory=list)
     came_t: dict[str, float] = msgspec.field(default_factory=dict)
+    retired: dict[str, tuple[float, str | None]] = msgspec.field(default_factory=dict)
 
     def fold(self, readings: Iterable[AnyReading], known_t: float = math.inf) -> None:
         """Take readings in, in their order.
@@ -73,6 +75,8 @@ class Board(msgspec.Struct):
                     self._alarmed(reading)
                 case Node():
                     self._named(reading)
+                case Retire():
+                    self._retired(reading)
 
     def _came(self, reading: AnyReading, known_t: float) -> None:
         """Note when a node whose clock is ahead was heard of."""
@@ -104,6 +108,11 @@ class Board(msgspec.Struct):
         known = self._node(reading.node, reading.t)
         known.callsign = reading.callsign if reading.callsign is not None else known.callsign
         known.crew = reading.crew if reading.crew is not None else known.crew
+
+    def _retired(self, reading: Retire) -> None:
+        # The newest one's, or none: who came back and leaves again does so for a reason of his own.
+        if reading.t >= self.retired.get(reading.node, (-math.inf, None))[0]:
+            self.retired[reading.node] = reading.t, reading.reason
 
     def _told(self, reading: Status) -> None:
         known = self._node(reading.node, reading.t)
@@ -145,10 +154,11 @@ class Board(msgspec.Struct):
 
     def _joined(self, estimate: NodeEstimate) -> RecordNode:
         told = self.nodes.get(estimate.node) or NodeBoard(t=estimate.t)
-        return _record_of(estimate, told, min(estimate.t, self.came_t.get(estimate.node, math.inf)))
+        _, reason = self.retired.get(estimate.node, (0.0, None))
+        return _record_of(estimate, told, min(estimate.t, self.came_t.get(estimate.node, math.inf)), reason)
 
 
-def _record_of(estimate: NodeEstimate, told: NodeBoard, t: float) -> RecordNode:
+def _record_of(estimate: NodeEstimate, told: NodeBoard, t: float, retire_reason: str | None) -> RecordNode:
     return RecordNode(
         node=estimate.node,
         role=estimate.role,
@@ -166,4 +176,5 @@ def _record_of(estimate: NodeEstimate, told: NodeBoard, t: float) -> RecordNode:
         temperature_c=told.temperature_c,
         motionless_s=told.motionless_s,
         moved_t=told.moved_t,
+        retire_reason=retire_reason if estimate.retired else None,
     )

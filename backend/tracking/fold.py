@@ -7,6 +7,7 @@ from typing import Self
 import msgspec
 
 from backend.live import record
+from backend.live.past import SHOWN_WITHIN_S
 from backend.live.record import PictureRecord
 from backend.log.base import LoggedBatch, RecordedFrame
 from backend.tracking.board import Board
@@ -16,7 +17,11 @@ from estimator.estimate import Relative
 from estimator.measurements import AnyReading
 from estimator.trackers.base import Tracker, TrackerSettings
 
-VERSION = 3
+VERSION = 4
+
+STOOD_S = 2.0
+"""What was shown for longer is recorded as it was, whatever comes later. Gateways post once a second or more
+often: where all of them are behind by as much, seconds are recorded as they become known, and whole."""
 
 
 class OtherState(Exception):  # noqa: N818 - names the condition
@@ -31,10 +36,12 @@ class State(msgspec.Struct, frozen=True, array_like=True):
         tracker: name of the tracker.
         settings: what the tracker was told.
         seq: newest log entry folded.
-        received: when it came, Unix seconds.
+        received: when the newest one with readings came, Unix seconds.
         newest_t: incident time, Unix seconds.
         board: what is shown but not fused.
         estimator: the tracker's own state.
+        stood: see `IncidentFold`.
+        begun: see `IncidentFold`.
     """
 
     version: int
@@ -45,6 +52,8 @@ class State(msgspec.Struct, frozen=True, array_like=True):
     newest_t: float | None
     board: Board
     estimator: bytes
+    stood: int | None = None
+    begun: float = 0.0
 
 
 class _Version(msgspec.Struct, frozen=True, array_like=True):
@@ -62,9 +71,11 @@ class IncidentFold:
     Attributes:
         seq: newest log entry folded, or begun.
         whole: it is folded to its end.
-        received: when it came, Unix seconds.
+        received: when the newest one with readings came, Unix seconds.
         newest_t: incident time, Unix seconds.
         row: newest second whose row was made; None: none since the beginning, or since it was restored.
+        stood: newest second whose row is what stood on the screens until something came later; None: none.
+        begun: when what came first for the second that is to be recorded next was received, Unix seconds.
     """
 
     def __init__(self, tracker: str, settings: TrackerSettings, live: bool = False) -> None:
@@ -72,6 +83,7 @@ class IncidentFold:
         self._live = live
         self._settings = settings
         self._tracker: Tracker = trackers.create(tracker, settings)
+        self._asked = self._tracker
         self._board = Board()
         self._picture: PictureRecord | None = None
         self.seq = 0
@@ -79,6 +91,8 @@ class IncidentFold:
         self.received = 0.0
         self.newest_t: float | None = None
         self.row: int | None = None
+        self.stood: int | None = None
+        self.begun = 0.0
 
     def fold(self, batch: LoggedBatch, readings: Sequence[AnyReading]) -> Iterator[RecordedFrame | None]:
         """Fold one log entry, a piece at each step, so that the caller can let others have their turn.
@@ -91,37 +105,79 @@ class IncidentFold:
             After each piece, the row that it completed, or None.
         """
         self.whole = False
+        self._asked = self._tracker
         known_t = batch.received if self._live else math.inf
+        second = self._second
+        if self._live and readings and second is not None and self._stood_long(second, batch.received):
+            # The second may go on in what comes now, and would be recorded as of when that came.
+            self.stood, self.begun = second, batch.received
+            yield self._made(second)
         for piece in pieces(readings, self.newest_t, known_t):
             row = None
-            if piece.row is not None:
-                # Here and nowhere else: when a picture is published depends on the wall clock, rows do not.
-                self._board.notice(self._tracker.take_notices())
-                self._picture = None
-                row = self._row(piece.row)
-                self.row = piece.row
+            if piece.row is not None and (self.stood is None or piece.row > self.stood):
+                row = self._made(piece.row)
             self._tracker.fold(piece.readings, known_t)
             self._board.fold(piece.readings, known_t)
-            self.newest_t = piece.newest_t
+            second, self.newest_t = self._second, piece.newest_t
+            if self._second != second:
+                self.begun = batch.received
             self._picture = None
             self.seq, self.received = batch.seq, batch.received
             yield row
-        self.seq, self.received = batch.seq, batch.received
+        self.seq = batch.seq
         self.whole = True
+
+    def _stood_long(self, second: int, received: float) -> bool:
+        return received > max(second, self.begun) + STOOD_S
+
+    @property
+    def since_t(self) -> float | None:
+        """The moment since which what is known now has been shown, Unix seconds; None before the first."""
+        second = self._second
+        if second is None or not self._live:
+            return second
+        return max(second, self.received - SHOWN_WITHIN_S)
+
+    @property
+    def _second(self) -> int | None:
+        """The second under which what is known now is recorded; None before the first reading."""
+        second = row_of(self.newest_t)
+        return second if second is None or self.stood is None else max(second, self.stood + 1)
+
+    def _made(self, second: int) -> RecordedFrame:
+        # Here and nowhere else: when a picture is published depends on the wall clock, rows do not.
+        self._board.notice(self._tracker.take_notices())
+        self._picture = None
+        self.row = second
+        return self._row(second)
 
     def prepare(self) -> None:
         """Do now what the next picture needs: trackers put their work off until something is asked."""
         self._tracker.counts()
 
+    def settle(self) -> bool:
+        """Nothing comes for now: let what was folded in a hurry be told as it is without one.
+
+        Rows of seconds that are over are not touched: when nobody posts is no function of the log.
+
+        Returns:
+            Something was.
+        """
+        settled = self._tracker.settled() if self._asked is self._tracker else None
+        if settled is None:
+            return False
+        self._asked, self._picture = settled, None
+        return True
+
     def picture(self) -> PictureRecord:
         """What is known now."""
         if self._picture is None:
-            self._picture = self._board.picture(self._tracker.estimates(), self.newest_t)
+            self._picture = self._board.picture(self._asked.estimates(), self.newest_t)
         return self._picture
 
     def last_row(self) -> RecordedFrame | None:
         """The row of the second that incident time is in, None before the first; more folding replaces it."""
-        second = row_of(self.newest_t)
+        second = self._second
         return None if second is None else self._row(second)
 
     def _row(self, second: int) -> RecordedFrame:
@@ -135,7 +191,7 @@ class IncidentFold:
         Raises:
             KeyError: a node is not known.
         """
-        return self._tracker.relative(a, b)
+        return self._asked.relative(a, b)
 
     def state(self) -> bytes:
         """The whole state; to be taken between entries only."""
@@ -149,6 +205,8 @@ class IncidentFold:
                 self.newest_t,
                 self._board,
                 self._tracker.snapshot(),
+                self.stood,
+                self.begun,
             )
         )
 
@@ -170,6 +228,8 @@ class IncidentFold:
         except (msgspec.DecodeError, ValueError) as error:
             raise OtherState(str(error)) from error
         fold = cls(tracker, settings, live)
-        fold._tracker, fold._board = restored, state.board
+        fold._tracker = fold._asked = restored
+        fold._board = state.board
         fold.seq, fold.received, fold.newest_t = state.seq, state.received, state.newest_t
+        fold.stood, fold.begun = state.stood, state.begun
         return fold

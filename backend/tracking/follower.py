@@ -28,13 +28,12 @@ LONGEST_SLICE_S = 0.1
 """Within an entry of thousands of readings, others have their turn after so long."""
 
 IDLE_S = 2.0
-"""After so long without news the state is stored, so that nothing needs to be folded again after a kill."""
+"""After so long without news the state is stored, and what was folded in a hurry is told without one."""
 
 LEAVE_S = 120.0
 """After so long without news an incident is left; the next reading brings the worker back to it."""
 
-LONGEST_REST_S = 0.5
-RETRY_S = 1.0
+LONGEST_REST_S, RETRY_S = 0.5, 1.0
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -50,7 +49,7 @@ class Follower:
         reader: of the log.
         writer: of rows and states.
         leases: of this worker.
-        compute: the one thread in which all folding is done.
+        compute: threads for all folding; an incident is in one of them at a time.
         publish: sends a picture or an answer to the web process.
         shown_hz: how often a picture may be published.
 
@@ -83,6 +82,7 @@ class Follower:
         self._fold: IncidentFold
         self._keeper: Keeper
         self._storing: asyncio.Task[bool] | None = None
+        self._in_use = asyncio.Lock()
 
     def hear(self, seq: int) -> None:
         """The log has grown."""
@@ -155,6 +155,8 @@ class Follower:
             if not behind and self._publication.lacks(self._fold.seq):
                 await self._estimate(self._fold.prepare)
             at_end = not behind and (self._head.closed or quiet_s >= LEAVE_S)
+            if not behind and (at_end or quiet_s >= IDLE_S) and await self._estimate(self._fold.settle):
+                self._publication.again()
             if at_end or self._stopping.is_set():
                 await self._show(last=True)
                 if await self._settle() or self._stopping.is_set():
@@ -165,8 +167,9 @@ class Follower:
                 await self._rest()
 
     async def _in_compute(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        loop = asyncio.get_running_loop()
-        return await loop.run_in_executor(self._compute, lambda: function(*args, **kwargs))
+        async with self._in_use:
+            loop = asyncio.get_running_loop()
+            return await loop.run_in_executor(self._compute, lambda: function(*args, **kwargs))
 
     async def _estimate(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """Run what folds readings or asks for what was folded: trackers do their work at either.
@@ -229,7 +232,7 @@ class Follower:
             return
         self._publication.begin()
         picture, encoded = await self._estimate(self._encoded)
-        self._publication.show(seq, self._fold.row, picture, encoded)
+        self._publication.show(seq, self._fold.row, self._fold.since_t, picture, encoded)
 
     def _encoded(self) -> tuple[PictureRecord, bytes]:
         picture = self._fold.picture()

@@ -42,17 +42,20 @@ class Publication:
         """A picture is being made: the next one is due so long after this moment."""
         self._shown_at = time.monotonic()
 
-    def show(self, seq: int, row: int | None, picture: PictureRecord, encoded: bytes) -> None:
+    def show(
+        self, seq: int, row: int | None, since_t: float | None, picture: PictureRecord, encoded: bytes
+    ) -> None:
         """Publish a picture.
 
         Args:
             seq: newest log entry in it.
             row: newest second whose row was made.
+            since_t: since when this is what is known, Unix seconds.
             picture: what is known.
             encoded: the same as bytes.
         """
         self._shown_seq, self._shown = seq, picture
-        self._publish(Picture(self._incident, seq, encoded, row))
+        self._publish(Picture(self._incident, seq, encoded, row, since_t=since_t))
 
     def again(self) -> None:
         """The web process may have missed what was published: the newest picture is told once more."""

@@ -18,7 +18,7 @@ from backend.log.base import LogReader
 from backend.log.incidents import IncidentStore
 from backend.tracking.heads import head_of
 from backend.tracking.smoothing import Smoothing
-from backend.tracking.tracks import live_tracks
+from backend.tracking.tracks import live_tracks, rounded
 from estimator.estimate import Relative, TrackPoint
 
 ASK_WITHIN_S = 5.0
@@ -61,6 +61,8 @@ def tracking_router(
             )
         if t is None or t >= channel.now(time.time()):
             return as_json(channel.frame(time.time()))
+        if (standing := channel.past_frame(t)) is not None:
+            return as_json(standing)
         await hub.stored(channel, t)
         row = await asyncio.to_thread(row_at, reader, channel.incident, t)
         return as_json(frame_of(row, channel.incident, t))
@@ -99,6 +101,9 @@ def tracking_router(
         to: Moment = None,
         step: Annotated[int, Query(ge=1, le=3600, description="seconds from point to point")] = 1,
         view: Literal["live", "smoothed"] = "live",
+        decimals: Annotated[
+            int | None, Query(ge=0, le=9, description="of metres and m²; all that there are, without it")
+        ] = None,
     ) -> Response:
         """Where the nodes were: as it was known then (`live`), or with everything known now (`smoothed`)."""
         channel = await hub.channel(incident)
@@ -108,10 +113,10 @@ def tracking_router(
             if channel.record.t is not None and channel.record.t.is_integer():
                 newest = int(channel.record.t), channel.record
             shown = await asyncio.to_thread(live_tracks, reader, incident, node, start, to, step, newest)
-            return as_json(shown)
+            return await asyncio.to_thread(_tracks_as_json, shown, decimals)
         smoothed = await smoothing.smoothed(head_of(channel.incident))
         chosen = smoothed if node is None else {name: smoothed[name] for name in smoothed if name == node}
-        return as_json(_tracks(chosen, start, to, step))
+        return await asyncio.to_thread(lambda: _tracks_as_json(_tracks(chosen, start, to, step), decimals))
 
     return router
 
@@ -160,6 +165,10 @@ def relative_position(relative: Relative) -> RelativePosition:
         distance_m=distance_m,
         distance_sigma_m=math.sqrt(max(variance, 0.0)),
     )
+
+
+def _tracks_as_json(tracks: Tracks, decimals: int | None) -> Response:
+    return as_json(tracks if decimals is None else rounded(tracks, decimals))
 
 
 def _tracks(

@@ -11,7 +11,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from typing import Any, Generic, ParamSpec, TypeVar
 
-from backend.errors import TooSlow, Unavailable
+from backend.errors import NotFound, TooSlow, Unavailable
 from backend.tracking.aside import (
     Smoothed,
     advice_of_log,
@@ -151,6 +151,7 @@ class Smoothing:
             TooSlow: it takes long, or other work is in the way.
             Unavailable: the process that does it ended.
         """
+        _refuse_where_nothing_came(head)
         key = (head.incident, head.last_seq, head.tracker, head.settings, node, t)
         return await self._evidence.get(
             key,
@@ -171,6 +172,7 @@ class Smoothing:
             TooSlow: it takes long, or other work is in the way.
             Unavailable: the process that does it ended.
         """
+        _refuse_where_nothing_came(head)
         key = (head.incident, head.last_seq, head.tracker, head.settings, node)
         return await self._advice.get(
             key,
@@ -189,12 +191,15 @@ class Smoothing:
             Unavailable: there is no state that could tell.
             TooSlow: it takes long, or other sums are in the way.
         """
+        _refuse_where_nothing_came(head)
         try:
             return await asyncio.wait_for(
                 self._aside(relative_from_state, self._url, head, a, b), RELATIVE_WITHIN_S
             )
         except TimeoutError:
-            raise TooSlow("Other sums are in the way: ask again in a minute.") from None
+            raise TooSlow(
+                "The process for such sums is busy, or not up yet on a busy machine: ask again in a minute."
+            ) from None
         except OtherState:
             return await self._relative.get(
                 (head, a, b),
@@ -229,6 +234,12 @@ class Smoothing:
             if self._pool is pool:
                 self._pool = None
             raise Unavailable("The process that does these sums has ended: ask again.") from None
+
+
+def _refuse_where_nothing_came(head: Head) -> None:
+    """Answer at once what needs no sum: on a busy machine their process takes a minute to start."""
+    if head.last_seq == 0:
+        raise NotFound("No reading of this incident has named a node yet.")
 
 
 def _begin_aside() -> None:

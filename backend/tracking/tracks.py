@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from backend.errors import Invalid
 from backend.live.frame import Track, Tracks
 from backend.live.presentation import covariance_at
@@ -63,6 +65,21 @@ def live_tracks(
                 "ask for one `node`, a shorter time or a larger `step`."
             )
     return Tracks(tracks=[Track(node=name, points=track) for name, track in tracks.items()])
+
+
+def rounded(tracks: Tracks, decimals: int) -> Tracks:
+    """Tracks with so many decimals of their m and m²: less than half of the bytes, for who draws them."""
+    return Tracks(
+        tracks=[Track(node=one.node, points=_rounded(one.points, decimals)) for one in tracks.tracks]
+    )
+
+
+def _rounded(points: list[Point], decimals: int) -> list[Point]:
+    if not points:
+        return points
+    numbers = np.array(points)
+    numbers[:, 1:] = np.round(numbers[:, 1:], decimals) + 0.0  # no "-0.0"
+    return list(map(tuple, numbers.tolist()))
 
 
 def _seconds(

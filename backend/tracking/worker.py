@@ -28,6 +28,10 @@ is told to stop gives its leases back within that time, and whoever takes its pl
 
 STOP_WITHIN_S = 4.0
 
+COMPUTE_THREADS = 2
+"""So many incidents are folded at a time, by turns of the interpreter: one whose steps take seconds (hundreds
+of people, a gateway gone mad) must not hold all others back."""
+
 log = structlog.get_logger(__name__)
 
 
@@ -60,7 +64,7 @@ class Worker:
         self._writer = SqlDerivedWriter(self._engine)
         self._leases = Leases(lambda: writing(self._engine), holder)
         self._link = WorkerLink(link_address, token, holder, on_connect=self._show_all_again)
-        self._compute = ThreadPoolExecutor(max_workers=1, thread_name_prefix="estimator")
+        self._compute = ThreadPoolExecutor(COMPUTE_THREADS, thread_name_prefix="estimator")
         self._shown_hz = shown_hz
         self._followers: dict[str, Follower] = {}
         self._tasks: dict[str, asyncio.Task[None]] = {}
@@ -73,11 +77,6 @@ class Worker:
         loop = asyncio.get_running_loop()
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, self._stop.set)
-        # The estimator thread takes incidents up only after this: its compiled loops are loaded, or made.
-        warm = asyncio.wrap_future(self._compute.submit(warm_up))
-        # Whoever asks whether a worker is there hears of one that can compute.
-        warm.add_done_callback(lambda _: self._link.start())
-        self._compute.submit(tune_for_serving)
         chores = [asyncio.create_task(chore()) for chore in (self._poll, self._renew, self._listen)]
         stopped = asyncio.create_task(self._stop.wait())
         # A chore never ends by itself: if one does, it is by a defect, and the supervisor starts us again.
@@ -95,6 +94,11 @@ class Worker:
         self._engine.dispose()
 
     async def _poll(self) -> None:
+        # Incidents are taken up only after this: the compiled loops are loaded, or made.
+        loop = asyncio.get_running_loop()
+        await loop.run_in_executor(self._compute, _warm_up)
+        # Whoever asks whether a worker is there hears of one that can compute.
+        self._link.start()
         while True:
             await self._look()
             await asyncio.sleep(POLL_S)
@@ -185,3 +189,8 @@ class Worker:
     def _show_all_again(self) -> None:
         for follower in self._followers.values():
             follower.show_again()
+
+
+def _warm_up() -> None:
+    warm_up()
+    tune_for_serving()

@@ -43,3 +43,10 @@ def test_the_document_says_where_the_token_goes(http: httpx2.Client) -> None:
     api = {path for path in document["paths"] if path.startswith("/api/")}
     assert guarded == api - {"/api/v1/session"}
     assert "/api/v1/incidents/{incident}/telemetry" in guarded
+
+
+@pytest.mark.parametrize("path", ["/healthz", "/openapi.json", "/api/v1/incidents"])
+def test_every_page_that_can_be_read_tells_its_head(http: httpx2.Client, path: str) -> None:
+    head = http.head(path)
+    assert (head.status_code, head.content) == (200, b"")
+    assert int(head.headers["content-length"]) == len(http.get(path).content)

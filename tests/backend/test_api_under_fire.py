@@ -10,7 +10,7 @@ import schemathesis
 from schemathesis.specs.openapi.checks import negative_data_rejection, positive_data_acceptance
 
 from backend.errors import PROBLEM_MEDIA_TYPE
-from tests.running import Post, Server
+from tests.running import ANSWERED_WITHIN_S, Post, Server
 
 # `make check` holds this file against the application's own document.
 DOCUMENT = Path(__file__).parents[2] / "frontend" / "openapi.json"
@@ -41,6 +41,8 @@ def test_no_request_is_a_defect(case: schemathesis.Case[Any], server: Server, in
         case.path_parameters["incident"] = incident
     if case.path.endswith("/frame"):
         case.query["min_seq"] = 0  # an entry that never comes is answered 504, by contract
-    response = case.call_and_validate(base_url=server.url, excluded_checks=list(BEYOND_A_SCHEMA))
+    response = case.call_and_validate(
+        base_url=server.url, excluded_checks=list(BEYOND_A_SCHEMA), timeout=ANSWERED_WITHIN_S
+    )
     if response.status_code >= 400:
         assert response.headers["content-type"][0].startswith(PROBLEM_MEDIA_TYPE)

@@ -2,7 +2,6 @@
 
 import contextlib
 import os
-import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -10,15 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.running import Post, Server, eventually
+from tests.running import Post, Server, eventually, free_port
 
 SHARED_WORD = "a-word-that-both-share"
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 @contextlib.contextmanager

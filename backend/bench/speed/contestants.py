@@ -18,6 +18,7 @@ from backend.interpreter import tune_for_serving
 from estimator.estimate import TrackPoint
 from estimator.measurements import AnyReading
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from estimator.warm import warm_up
 
 Tracks = dict[str, list[TrackPoint]]
 WARM_S = 12
@@ -122,9 +123,13 @@ def rivals() -> list[Contestant]:
 def warm() -> None:
     """Let the tracker work for a moment: what it loads at first is no part of any keyframe.
 
+    Not all of its compiled functions are needed in the first seconds: they are loaded beforehand, as `make`
+    compiles them.
+
     Then the collector is set as the worker sets it: whoever makes the next object in Python would have to
     look through all that numba and GTSAM have loaded.
     """
+    warm_up()
     laps, tracker = Laps(responders=2, breadcrumbs=9), Ours()
     tracker.take(laps.introductions())
     for second in range(1, WARM_S + 1):

@@ -7,11 +7,13 @@ from contextlib import asynccontextmanager
 
 import pytest
 
+from backend.coordination import web_link, worker_link
 from backend.coordination.base import Answer, Picture, Query, ToWorker, Wake
-from backend.coordination.framing import framed
+from backend.coordination.framing import Hello, framed
 from backend.coordination.web_link import WebLink
 from backend.coordination.worker_link import WorkerLink
 from backend.errors import TooSlow, Unavailable
+from tests.running import free_port
 
 TOKEN = "a shared secret"  # noqa: S105 - of a test
 
@@ -76,6 +78,44 @@ def test_a_picture_reaches_the_web_process_and_a_wake_up_the_worker() -> None:
     run(go())
 
 
+def test_a_worker_that_falls_silent_is_no_longer_taken_to_be_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(web_link, "SILENT_AFTER_S", 0.2)
+
+    async def go() -> None:
+        async with web_side([]) as (web, address):
+            host, _, port = address.rpartition(":")
+            reader, writer = await asyncio.open_connection(host, int(port))
+            writer.write(framed(Hello(TOKEN, "hangs")))
+            await until(lambda: web.connected)
+            await until(lambda: not web.connected)
+            assert await reader.read() == b""
+            writer.close()
+
+    run(go())
+
+
+def test_a_worker_with_nothing_to_tell_stays_connected(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(web_link, "SILENT_AFTER_S", 0.2)
+    monkeypatch.setattr(worker_link, "ALIVE_EVERY_S", 0.05)
+
+    async def go() -> None:
+        times = 0
+
+        def connected() -> None:
+            nonlocal times
+            times += 1
+
+        async with web_side([]) as (web, address):
+            worker = WorkerLink(address, TOKEN, "north", connected)
+            worker.start()
+            await until(lambda: web.connected)
+            await asyncio.sleep(0.6)
+            assert (web.connected, times) == (True, 1)
+            await worker.close()
+
+    run(go())
+
+
 def test_a_question_is_answered_by_the_worker_that_follows_the_incident() -> None:
     async def go() -> None:
         pictures: list[Picture] = []
@@ -112,8 +152,7 @@ def test_a_question_without_a_worker_or_without_an_answer_ends_in_a_clear_refusa
 def test_a_worker_comes_back_after_the_web_process_has_started_again() -> None:
     async def go() -> None:
         pictures: list[Picture] = []
-        with listener() as free:
-            port = free.getsockname()[1]
+        port = free_port()
         async with worker_side(f"127.0.0.1:{port}") as (worker, connected):
             for round_ in range(3):
                 connected.clear()

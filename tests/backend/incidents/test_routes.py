@@ -67,6 +67,10 @@ def test_incidents_are_listed_by_state(client: TestClient, created: dict[str, An
         {"name": "x" * 201},
         {"name": "a\x00b"},
         {"name": "a\nb"},
+        {"name": " "},
+        {"name": "\u00a0\u2003"},
+        {"name": "\u200b\u2060\ufeff"},
+        {"name": "\u3164 \u2800"},
         {"name": None},
         {"name": 7},
         {"clock": "sundial"},
@@ -78,6 +82,8 @@ def test_incidents_are_listed_by_state(client: TestClient, created: dict[str, An
         {"levels": [{"level": i, "name": "x", "up_m": i} for i in range(101)]},
         {"levels": [{"level": 0.5, "name": "G", "up_m": 0}]},
         {"levels": [{"level": 0, "name": "", "up_m": 0}]},
+        {"levels": [{"level": 0, "name": "\u200b", "up_m": 0}]},
+        {"levels": [{"level": 2, "name": "2", "up_m": 3}, {"level": 1, "name": "1", "up_m": 6}]},
         {"levels": [{"level": 0, "name": "G", "up_m": 1e9}]},
         {"settings": {"stale_after_s": 0}},
         {"settings": {"stale_after_s": 100, "lost_after_s": 50}},
@@ -144,6 +150,12 @@ def test_a_closed_incident_stays_closed(client: TestClient, created: dict[str, A
     answer = client.patch(address, json={"state": "active"})
     assert answer.status_code == 409
     assert "new incident" in answer.json()["detail"]
+
+
+def test_which_levels_contradict_each_other_is_said(client: TestClient) -> None:
+    levels = [{"level": 2, "name": "2", "up_m": 3.0}, {"level": 1, "name": "1", "up_m": 6.5}]
+    (error,) = client.post(INCIDENTS, json=NEW | {"levels": levels}).json()["errors"]
+    assert "level 2 is at 3 m, below level 1 at 6.5 m" in error["message"]
 
 
 @pytest.mark.parametrize("incident", ["nowhere", "%00", "i%00", "%F0%9F%94%A5"])

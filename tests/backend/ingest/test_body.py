@@ -57,20 +57,21 @@ def test_a_bomb_is_given_up_long_before_it_is_decompressed() -> None:
     assert body.given < 10
 
 
-@pytest.mark.parametrize(
-    "damaged",
-    [
-        gzip.compress(b"{}")[:-1],
-        gzip.compress(b"{}")[:-8],
-        gzip.compress(b"{}")[:5],
-        b"",
-        gzip.compress(b"{}") + b"x",
-        gzip.compress(b"{}") * 2,
-        b"{}",
-        zlib.compress(b"{}"),
-        gzip.compress(b"{}")[:-5] + b"12345",
-    ],
-)
+WHOLE = gzip.compress(b"{}")
+DAMAGED = {
+    "a byte short": WHOLE[:-1],
+    "without its check sum": WHOLE[:-8],
+    "cut in its header": WHOLE[:5],
+    "empty": b"",
+    "followed by another byte": WHOLE + b"x",
+    "twice": WHOLE * 2,
+    "not compressed": b"{}",
+    "zlib": zlib.compress(b"{}"),
+    "with another check sum": WHOLE[:-5] + b"12345",
+}
+
+
+@pytest.mark.parametrize("damaged", DAMAGED.values(), ids=DAMAGED)
 @pytest.mark.parametrize("size", [1, 1_000])
 def test_damaged_gzip_is_not_understood(damaged: bytes, size: int) -> None:
     with pytest.raises(NotUnderstood):

@@ -48,6 +48,33 @@ def test_after_and_limit_choose_lines(client: TestClient, gateway: Field) -> Non
     assert [json.loads(line)["seq"] for line in answer.content.splitlines()] == [2, 3]
 
 
+def test_of_the_entries_chosen_those_with_a_kind_of_reading_come_whole_also_if_it_was_set_aside(
+    client: TestClient, gateway: Field
+) -> None:
+    incident = gateway.incident()
+    bodies = [
+        b'[{"kind":"altitude","t":1,"node":"alarm","up_m":1}]',
+        b'[{"kind":"altitude","t":2,"node":"n","up_m":1},{"kind":"retire","t":2,"node":"n"}]',
+        b'["alarm",{"kind":"alarm"}]',
+        rb'[{"kind":"\u0061larm","t":4,"node":"n","alarm":"pass","state":"raised"},"cut \ud83d"]',
+        b'[{"kind":"retire","t":5,"node":"n"}]',
+    ]
+    for number, readings in enumerate(bodies):
+        body = b'{"gateway":"g","batch":"%d","readings":%s}' % (number, readings)
+        assert gateway.post(incident, body).status == 202
+    whole = client.get(f"/api/v1/incidents/{incident}/log").content.splitlines()
+
+    def chosen(**query: object) -> list[bytes]:
+        answer = client.get(f"/api/v1/incidents/{incident}/log", params=query)  # type: ignore[arg-type]
+        assert answer.status_code == 200
+        return answer.content.splitlines()
+
+    assert chosen(kind="alarm") == whole[2:4]
+    assert chosen(kind=["alarm", "retire"]) == whole[1:5]
+    assert chosen(kind="retire", after=1, limit=3) == whole[1:2]
+    assert chosen(kind="nothing") == []
+
+
 def test_an_empty_log_is_empty(client: TestClient, gateway: Field) -> None:
     answer = client.get(f"/api/v1/incidents/{gateway.incident()}/log")
     assert (answer.status_code, answer.content) == (200, b"")
@@ -61,6 +88,7 @@ def test_an_empty_log_is_empty(client: TestClient, gateway: Field) -> None:
         (None, "limit=0", 422),
         (None, "after=x", 422),
         (None, f"after={2**64}", 422),
+        (None, "kind=", 422),
     ],
 )
 def test_what_is_not_there_or_no_number_is_refused(

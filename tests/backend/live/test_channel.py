@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from backend.live.channel import Channel, Screen
+from backend.live.channel import BEHIND_AFTER_S, Channel, Screen, Waiting
 from backend.live.record import PictureRecord, RecordNode, encode
 from backend.log.incident import Incident
 
@@ -180,3 +180,25 @@ def test_who_waits_for_an_entry_is_woken_by_it(channel: Channel) -> None:
 
     assert asyncio.run(wait()) == (False, True, False)
     assert not channel.busy
+
+
+def test_what_was_reported_and_is_long_not_in_the_picture_is_told_until_it_is(channel: Channel) -> None:
+    def told(server_t: float) -> list[str]:
+        return [notice.code for notice in channel.frame(server_t).notices]
+
+    channel.take(3, at(0.0, 1.0))
+    channel.waiting = Waiting(oldest=4, since_t=100.0, newest=6)
+    assert told(100.0 + BEHIND_AFTER_S - 1) == []
+    assert told(100.0 + BEHIND_AFTER_S + 1) == ["estimator_behind"]
+    channel.take(5, at(0.0, 2.0))
+    assert told(100.0 + BEHIND_AFTER_S + 1) == ["estimator_behind"]
+    channel.take(6, at(0.0, 3.0))
+    assert told(1000.0) == []
+
+
+def test_a_screen_that_waits_is_told_as_soon_as_the_picture_is_behind(channel: Channel) -> None:
+    channel.take(3, at(0.0, 1.0))
+    tablet, _ = joined(channel)
+    channel.waiting = Waiting(oldest=4, since_t=0.0, newest=4)
+    channel.show(BEHIND_AFTER_S + 1)
+    assert [notice["code"] for notice in tablet.messages[-1]["notices"]] == ["estimator_behind"]

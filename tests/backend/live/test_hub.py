@@ -1,6 +1,7 @@
 """Where a picture begins."""
 
 import asyncio
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,16 +11,17 @@ import sqlalchemy as sa
 from backend.coordination.base import Picture
 from backend.coordination.lease import Leases
 from backend.errors import NotFound
-from backend.live.channel import Channel
+from backend.live import hub as hub_module
+from backend.live.channel import Channel, Waiting
 from backend.live.hub import Hub
 from backend.live.record import PictureRecord, RecordNode, encode
-from backend.log.base import RecordedFrame, Snapshot
+from backend.log.base import LoggedBatch, RecordedFrame, Snapshot
 from backend.log.derived import SqlDerivedWriter
 from backend.log.engine import make_engine, writing
 from backend.log.incidents import IncidentStore
 from backend.log.migrate import prepare
 from backend.log.read import SqlLogReader
-from backend.log.schema import incidents
+from backend.log.schema import batches, incidents
 
 
 @pytest.fixture
@@ -52,6 +54,15 @@ def grow(engine: sa.Engine, incident: str, seq: int) -> None:
     """Have the incident's log end at an entry."""
     with writing(engine) as connection:
         connection.execute(sa.update(incidents).where(incidents.c.id == incident).values(last_seq=seq))
+
+
+def came(engine: sa.Engine, incident: str, received: dict[int, float]) -> None:
+    """Have entries come into the incident's log at those moments (Unix s)."""
+    with writing(engine) as connection:
+        for seq, t in received.items():
+            row = {"gateway": "g", "batch": str(seq), "received": t, "body": b"{}", "accepted": 0}
+            connection.execute(sa.insert(batches).values(incident=incident, seq=seq, **row))
+    grow(engine, incident, max(received))
 
 
 def channel(engine: sa.Engine, incident: str, *pictures: Picture) -> Channel:
@@ -107,6 +118,56 @@ def test_entries_without_readings_are_known_from_the_stored_state(
     assert channel(engine, incident).seq == 4
 
 
+class SlowReader(SqlLogReader):
+    """Of a busy machine."""
+
+    def batches(self, incident: str, after: int = 0, limit: int | None = None) -> Iterator[LoggedBatch]:
+        time.sleep(0.1)
+        return super().batches(incident, after, limit)
+
+
+def test_who_waits_for_a_picture_gets_it_though_others_were_let_go_of_while_the_database_was_read(
+    engine: sa.Engine, store: IncidentStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hub_module, "BEAT_S", 0.005)
+    incident = store.create("busy", "recorded").id
+    came(engine, incident, {1: 1.0})
+
+    async def go() -> bool:
+        hub = Hub(store, SlowReader(engine))
+
+        async def wait() -> bool:
+            return await (await hub.channel(incident)).folded(1, 5.0)
+
+        hub.start()
+        try:
+            waiting = asyncio.create_task(wait())
+            await asyncio.sleep(0.5)
+            hub.take(Picture(incident, 1, record(1.0)))
+            return await waiting
+        finally:
+            await hub.stop()
+
+    assert asyncio.run(go())
+
+
+def test_what_waits_in_the_log_is_known_by_the_oldest_entry_that_is_not_in_the_picture(
+    engine: sa.Engine, store: IncidentStore
+) -> None:
+    incident = store.create("no worker", "recorded").id
+    came(engine, incident, {1: 10.0, 2: 20.0, 3: 30.0})
+    assert channel(engine, incident).waiting == Waiting(oldest=1, since_t=10.0, newest=3)
+    assert channel(engine, incident, Picture(incident, 1, record(1.0))).waiting == Waiting(2, 20.0, 3)
+    assert channel(engine, incident, Picture(incident, 3, record(3.0))).waiting is None
+
+
+def test_nothing_waits_for_a_closed_incident(engine: sa.Engine, store: IncidentStore) -> None:
+    incident = store.create("over", "recorded").id
+    came(engine, incident, {1: 10.0})
+    store.change(incident, {"state": "closed"})
+    assert channel(engine, incident).waiting is None
+
+
 def test_a_recorded_picture_of_another_version_is_passed_over(
     engine: sa.Engine, store: IncidentStore
 ) -> None:
@@ -131,3 +192,51 @@ def test_a_picture_of_another_version_is_not_taken(engine: sa.Engine, store: Inc
 def test_there_is_no_picture_of_an_unknown_incident(engine: sa.Engine) -> None:
     with pytest.raises(NotFound):
         channel(engine, "nobody")
+
+
+class Heard:
+    """A connection that takes everything.
+
+    Attributes:
+        frames: what it has taken.
+    """
+
+    def __init__(self) -> None:
+        self.frames: list[bytes] = []
+
+    def push(self, frame: bytes) -> bool:
+        self.frames.append(frame)
+        return True
+
+
+def test_screens_hear_on_and_new_ones_are_let_in_while_the_database_does_not_answer(
+    postgres_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hub_module, "BEAT_S", 0.05)
+    monkeypatch.setattr(hub_module, "REFRESH_S", 0.05)
+    monkeypatch.setattr(hub_module, "READ_WITHIN_S", 0.2)
+    prepare(postgres_url)
+    engine, other = make_engine(postgres_url), make_engine(postgres_url)
+    incident = IncidentStore(engine).create("locked", "live").id
+
+    async def go() -> tuple[int, int]:
+        hub = Hub(IncidentStore(engine), SqlLogReader(engine))
+        hub.start()
+        early, new = Heard(), Heard()
+        await hub.join(incident, early)
+        hub.take(Picture(incident, 1, record(0.0)))
+        with other.begin() as connection:
+            connection.execute(sa.text("LOCK TABLE incidents IN ACCESS EXCLUSIVE MODE"))
+            await asyncio.sleep(0.2)  # by now the hub waits for the database
+            before = len(early.frames)
+            await asyncio.sleep(0.3)
+            heard = len(early.frames) - before
+            await hub.join(incident, new)
+        await hub.stop()
+        return heard, len(new.frames)
+
+    heard, seen = asyncio.run(go())
+    engine.dispose()
+    other.dispose()
+    assert heard >= 3
+    assert seen >= 1

@@ -10,10 +10,11 @@ import pytest
 import sqlalchemy as sa
 
 from backend.log.append import append_group
-from backend.log.base import Appended, NewBatch
+from backend.log.base import Appended, LoggedBatch, NewBatch, RecordedFrame
 from backend.log.engine import make_engine
 from backend.log.incidents import IncidentStore
 from backend.log.migrate import prepare
+from backend.tracking.fold import IncidentFold
 from estimator.measurements import Alarm, AnyReading, Displacement, Drop, Node, Range, Rssi, Status
 
 Write = Callable[[str, Sequence[Sequence[AnyReading]]], None]
@@ -52,6 +53,36 @@ def walk(seconds: int, start_t: float = 1000.0, seed: int = 1) -> list[list[AnyR
     for i in range(5, len(batches) - 1, 9):
         batches[i], batches[i + 1] = batches[i + 1], batches[i]
     return batches
+
+
+def a_gateway_behind(seconds: int, behind_s: int = 40) -> list[list[AnyReading]]:
+    """ff1 posts each second; ff2's gateway does so as often, always as far behind."""
+    batches: list[list[AnyReading]] = [
+        [Node(t=1000.0, node="base", role="base")],
+        [Node(t=1000.0, node=name, role="responder", position_m=(0.0, 0.0, 0.0)) for name in ("ff1", "ff2")],
+    ]
+    for second in range(1, seconds + 1):
+        for name, t in (("ff1", 1000.0 + second), ("ff2", 1000.0 + second - behind_s)):
+            if t > 1000.0:
+                step = Displacement(t=t, from_t=t - 1.0, node=name, delta_m=(1.0, 0.0, 0.0))
+                heard = Range(t=t, a=name, b="base", range_m=t - 1000.0, technology="uwb")
+                batches.append([step, heard])
+    return batches
+
+
+def entry(seq: int) -> LoggedBatch:
+    return LoggedBatch(
+        seq=seq, gateway="e7", batch=f"b{seq}", received=1000.0 + seq, sent=None, body=b"", rejected=()
+    )
+
+
+def fold_all(fold: IncidentFold, batches: list[list[AnyReading]], first: int = 1) -> list[RecordedFrame]:
+    return [
+        row
+        for seq, readings in enumerate(batches, start=first)
+        for row in fold.fold(entry(seq), readings)
+        if row is not None
+    ]
 
 
 @pytest.fixture

@@ -37,6 +37,9 @@ class Fragile:
             raise KeyError(b)
         return None if a == "lost" else Relative(delta_m=(1.0, 2.0, 3.0), covariance_m2=(1, 0, 0, 1, 0, 1))
 
+    def settled(self) -> Self | None:
+        return None
+
     def take_notices(self) -> list[Notice]:
         return []
 

@@ -3,7 +3,7 @@
 from backend.live.record import PictureRecord, RecordAlarm
 from backend.tracking.board import NOTICES_KEPT, Board
 from estimator.estimate import NodeEstimate, Notice
-from estimator.measurements import Alarm, AnyReading, Node, Range, Status
+from estimator.measurements import Alarm, AnyReading, Node, Range, Retire, Status
 
 
 def board(*readings: AnyReading) -> Board:
@@ -65,3 +65,17 @@ def test_a_moved_breadcrumb_keeps_when_it_was_noticed() -> None:
 
 def test_other_readings_leave_no_trace() -> None:
     assert board(Range(t=1.0, a="ff1", b="bc1", range_m=1.0)) == Board()
+
+
+def test_why_somebody_was_retired_is_kept_as_it_was_last_said_and_told_of_nobody_who_is_there() -> None:
+    made = board(
+        Retire(t=5.0, node="ff1", reason="unit burned"),
+        Retire(t=3.0, node="ff1", reason="came late"),
+        Retire(t=5.0, node="unheard", reason="never there"),
+    )
+    gone = NodeEstimate(node="ff1", role="responder", t=5.0, retired=True)
+    there = NodeEstimate(node="ff1", role="responder", t=6.0)
+    assert [node.retire_reason for node in made.picture([gone], 5.0).nodes] == ["unit burned"]
+    assert [node.retire_reason for node in made.picture([there], 6.0).nodes] == [None]
+    made.fold([Retire(t=8.0, node="ff1")])
+    assert made.picture([gone], 8.0).nodes[0].retire_reason is None

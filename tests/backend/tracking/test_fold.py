@@ -6,30 +6,15 @@ import pytest
 from msgspec.structs import replace
 
 from backend.live import record
-from backend.log.base import LoggedBatch, RecordedFrame
+from backend.log.base import RecordedFrame
 from backend.tracking.fold import IncidentFold, OtherState
 from estimator.measurements import Alarm, AnyReading, Displacement, Node, Status
 from estimator.measurements.status import AlarmState
 from estimator.trackers import kirchhoff
 from estimator.trackers.base import TrackerSettings
-from tests.backend.tracking.conftest import walk
+from tests.backend.tracking.conftest import entry, fold_all, walk
 
 SETTINGS = TrackerSettings()
-
-
-def entry(seq: int) -> LoggedBatch:
-    return LoggedBatch(
-        seq=seq, gateway="e7", batch=f"b{seq}", received=1000.0 + seq, sent=None, body=b"", rejected=()
-    )
-
-
-def fold_all(fold: IncidentFold, batches: list[list[AnyReading]], first: int = 1) -> list[RecordedFrame]:
-    return [
-        row
-        for seq, readings in enumerate(batches, start=first)
-        for row in fold.fold(entry(seq), readings)
-        if row is not None
-    ]
 
 
 def test_a_fold_that_is_restored_anywhere_makes_the_same_rows() -> None:
@@ -111,7 +96,7 @@ def test_the_row_of_the_current_second_is_replaced_by_the_one_that_is_final() ->
 def test_an_entry_without_readings_counts() -> None:
     fold = IncidentFold("kirchhoff", SETTINGS)
     assert fold_all(fold, [[], []]) == []
-    assert (fold.seq, fold.received, fold.newest_t, fold.last_row()) == (2, 1002.0, None, None)
+    assert (fold.seq, fold.newest_t, fold.last_row()) == (2, None, None)
     restored = IncidentFold.restore(fold.state(), "kirchhoff", SETTINGS)
     assert (restored.seq, restored.picture().nodes) == (2, ())
 
@@ -123,7 +108,7 @@ def test_a_state_for_other_settings_or_of_another_version_is_refused() -> None:
     with pytest.raises(OtherState, match="settings"):
         IncidentFold.restore(state, "kirchhoff", TrackerSettings(lag_s=5.0))
     with pytest.raises(OtherState, match="version"):
-        IncidentFold.restore(b"\x98\x63" + state[2:], "kirchhoff", SETTINGS)
+        IncidentFold.restore(state[:1] + b"\x63" + state[2:], "kirchhoff", SETTINGS)
     with pytest.raises(OtherState):
         IncidentFold.restore(b"nonsense", "kirchhoff", SETTINGS)
     with pytest.raises(OtherState):
@@ -172,6 +157,82 @@ def fold_live(seconds: int) -> IncidentFold:
         batch = replace(entry(seq + 1), received=1000.0 + (seq + 1) // 2)
         assert list(fold.fold(batch, readings))
     return fold
+
+
+def fold_as_received(
+    batches: list[tuple[float, list[AnyReading]]], fold: IncidentFold
+) -> list[RecordedFrame]:
+    """The rows of a live incident, from batches with the times at which they came."""
+    return [
+        row
+        for seq, (received, readings) in enumerate(batches, start=fold.seq + 1)
+        for row in fold.fold(replace(entry(seq), received=received), readings)
+        if row is not None
+    ]
+
+
+def mayday_before_a_gap() -> list[tuple[float, list[AnyReading]]]:
+    """Somebody calls, and the gateway's link is lost for ten seconds, whose readings come all at once."""
+    entered = Node(t=1000.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0))
+    called = Alarm(t=1000.3, node="ff1", alarm="mayday", state="raised")
+    steps: list[AnyReading] = [
+        Displacement(t=1000.5 + k, from_t=999.5 + k, node="ff1", delta_m=(1.0, 0.0, 0.0)) for k in range(10)
+    ]
+    return [(1000.1, [entered]), (1000.4, [called]), (1005.0, []), (1010.5, steps)]
+
+
+def test_what_stood_on_the_screens_while_a_link_was_lost_is_recorded_as_it_was() -> None:
+    fold = IncidentFold("kirchhoff", SETTINGS, live=True)
+    rows = fold_as_received(mayday_before_a_gap(), fold)
+    stood = next(row for row in rows if row.second == 1001)
+    assert stood.received == 1000.4
+    assert [alarm.node for alarm in record.decode(stood.record).alarms] == ["ff1"]
+    assert [row.second for row in rows] == [1000, *range(1001, 1010)]
+    assert all(row.received == 1010.5 for row in rows if row.second > 1001)
+
+
+def test_what_comes_late_for_a_second_that_stood_is_in_the_next_row() -> None:
+    fold = IncidentFold("kirchhoff", SETTINGS, live=True)
+    rows = fold_as_received(
+        [*mayday_before_a_gap()[:3], (1010.5, [Status(t=1000.6, node="ff1", battery=0.5)])], fold
+    )
+    last = fold.last_row()
+    assert last is not None
+    assert [row.second for row in [*rows, last]] == [1000, 1001, 1002]
+    assert [n.battery for row in [*rows[1:], last] for n in record.decode(row.record).nodes] == [None, 0.5]
+
+
+def test_screens_that_only_a_gateway_far_behind_feeds_are_recorded_while_they_are_shown() -> None:
+    entered = Node(t=1000.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0))
+    behind: list[tuple[float, list[AnyReading]]] = [
+        (1000.2 + k / 2, [Status(t=980.2 + k / 2, node="ff1", air_bar=float(k))]) for k in range(40)
+    ]
+    rows = fold_as_received([(1000.1, [entered]), *behind], IncidentFold("kirchhoff", SETTINGS, live=True))
+    for wall_t in range(1004, 1019):
+        shown = max(row.received for row in rows if row.second <= wall_t and row.received <= wall_t)
+        assert wall_t - shown <= 3.0
+
+
+def test_gateways_that_are_all_behind_by_the_same_have_their_seconds_recorded_whole() -> None:
+    def rows_of(behind_s: float) -> list[tuple[int, int]]:
+        fold = IncidentFold("kirchhoff", SETTINGS, live=True)
+        batches: list[tuple[float, list[AnyReading]]] = [
+            (1000.0 + k + behind_s, [Status(t=1000.0 + k - 0.2, node="ff1", air_bar=float(k))])
+            for k in range(20)
+        ]
+        return [(row.second, row.seq) for row in fold_as_received(batches, fold)]
+
+    assert rows_of(50.0) == rows_of(0.0)
+
+
+def test_a_fold_that_is_restored_knows_what_stood() -> None:
+    batches = mayday_before_a_gap()
+    rows = fold_as_received(batches, IncidentFold("kirchhoff", SETTINGS, live=True))
+    for cut in range(1, len(batches)):
+        first = IncidentFold("kirchhoff", SETTINGS, live=True)
+        before = fold_as_received(batches[:cut], first)
+        second = IncidentFold.restore(first.state(), "kirchhoff", SETTINGS, live=True)
+        assert before + fold_as_received(batches[cut:], second) == rows
 
 
 def test_a_fast_clock_makes_nobody_elses_readings_late() -> None:

@@ -15,6 +15,7 @@ from backend.log.derived import SqlDerivedWriter
 from backend.log.engine import writing
 from backend.log.incidents import IncidentStore
 from backend.log.read import SqlLogReader
+from backend.tracking import follower
 from backend.tracking.fold import IncidentFold
 from backend.tracking.follower import Follower
 from backend.tracking.heads import head_of, heads
@@ -22,7 +23,7 @@ from backend.tracking.reading import read_block
 from estimator import trackers
 from estimator.measurements import AnyReading, Retire, Status
 from estimator.trackers.base import Tracker, TrackerSettings
-from tests.backend.tracking.conftest import Write, walk
+from tests.backend.tracking.conftest import Write, a_gateway_behind, walk
 from tests.backend.tracking.fragile import Fragile
 
 
@@ -231,3 +232,37 @@ def test_a_kill_while_the_log_is_folded_anew_leaves_what_was_shown(
     after = list(reader.frames(incident))
     assert after[: len(before) - 1] == before[:-1]
     assert after[-1] != before[-1]
+
+
+def test_once_nothing_comes_any_more_what_was_folded_in_a_hurry_is_shown_without_one(
+    engine: sa.Engine,
+    store: IncidentStore,
+    write: Write,
+    compute: ThreadPoolExecutor,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(follower, "IDLE_S", 0.2)
+    incident = store.create("behind", "recorded").id
+    batches = a_gateway_behind(60)
+    write(incident, batches)
+    fold = IncidentFold("kirchhoff", TrackerSettings())
+    while fold.seq < len(batches):
+        for batch, readings in read_block(SqlLogReader(engine), incident, fold.seq):
+            list(fold.fold(batch, readings))
+    hurried = fold.picture()
+    assert fold.settle()
+    assert fold.picture() != hurried
+
+    async def go() -> Watch:
+        watch = Watch(engine, store, incident, compute)
+        following = asyncio.create_task(watch.follower.run())
+        async with asyncio.timeout(30.0):
+            while not watch.pictures or decode(watch.pictures[-1].record) != fold.picture():
+                watch.published.clear()
+                await watch.published.wait()
+        watch.follower.stop()
+        await following
+        return watch
+
+    watch = asyncio.run(go())
+    assert watch.pictures[-1].seq == len(batches)

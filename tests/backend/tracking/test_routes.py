@@ -102,6 +102,18 @@ def test_the_frame_of_a_moment_shows_what_was_known_then(post: Post, walked: str
         assert nodes["ff1"]["position_m"] == pytest.approx([float(second), 0.0, 0.0], abs=0.6)
 
 
+def test_what_nothing_has_come_since_is_shown_of_each_moment_since(post: Post) -> None:
+    incident = post.open_incident(clock="live")
+    t = time.time()
+    called = {"kind": "alarm", "t": t, "node": "ff1", "alarm": "mayday", "state": "raised"}
+    post.telemetry(incident, "1", [called])
+    post.frame(incident, min_seq=1)
+    time.sleep(max(0.0, t + 1.1 - time.time()))
+    frame = post.frame(incident, t=t + 1.0)
+    assert (frame["seq"], [alarm["node"] for alarm in frame["alarms"]]) == (1, ["ff1"])  # type: ignore[attr-defined]
+    assert post.frame(incident, t=t - 5.0)["alarms"] == []
+
+
 def test_before_the_first_reading_nothing_was_known(post: Post, walked: str) -> None:
     assert post.frame(walked, t=1.0)["nodes"] == []
 
@@ -156,6 +168,17 @@ def test_a_point_of_a_live_track_is_what_the_frame_of_its_second_shows(post: Pos
         nodes = {node["node"]: node for node in post.frame(walked, t=t)["nodes"]}  # type: ignore[attr-defined]  # JSON
         if t <= START_T + SECONDS:
             assert [*nodes["ff2"]["position_m"], *nodes["ff2"]["covariance_m2"]] == place
+
+
+@pytest.mark.parametrize("view", ["live", "smoothed"])
+def test_who_only_draws_a_track_may_have_it_in_millimetres(post: Post, walked: str, view: str) -> None:
+    whole = points(post, walked, "ff1", view=view)
+    rough = points(post, walked, "ff1", view=view, decimals=3)
+    assert [point[0] for point in rough] == [point[0] for point in whole]
+    for one, other in zip(rough, whole, strict=True):
+        assert one == pytest.approx(other, abs=0.000501)
+        assert all(len(repr(number).partition(".")[2]) <= 3 for number in one)
+    assert rough != whole
 
 
 def test_all_points_are_there_as_soon_as_their_entries_are_folded(post: Post) -> None:
@@ -231,6 +254,7 @@ def test_the_relative_position_is_told_while_the_worker_is_away_and_after_closin
         ("tracks", {"from": "NaN"}),
         ("tracks", {"view": "guessed"}),
         ("tracks", {"node": ""}),
+        ("tracks", {"decimals": -1}),
     ],
 )
 def test_parameters_outside_their_bounds_are_refused(

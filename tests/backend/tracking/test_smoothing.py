@@ -6,7 +6,7 @@ import multiprocessing
 import msgspec
 import pytest
 
-from backend.errors import TooSlow
+from backend.errors import NotFound, TooSlow
 from backend.tracking import smoothing
 from backend.tracking.aside import smooth_log
 from backend.tracking.heads import Head
@@ -62,6 +62,24 @@ def test_what_takes_long_goes_on_and_is_found_done() -> None:
             await kept.get("a", slow, 0.01, "This")
         slow.end.set()
         assert await kept.get("a", slow, 5.0, "This") == 1
+
+    asyncio.run(ask())
+
+
+def test_of_an_incident_without_readings_nobody_waits_for_the_process() -> None:
+    head = Head(
+        incident="new", tracker="kirchhoff", settings=TrackerSettings(), last_seq=0, closed=False, live=True
+    )
+
+    async def ask() -> None:
+        aside = Smoothing("sqlite:///not/there.db")
+        for asked in (
+            aside.relative(head, "ff1", "ff2"),
+            aside.evidence(head, "ff1", None),
+            aside.advice(head, "ff1"),
+        ):
+            with pytest.raises(NotFound, match="No reading of this incident"):
+                await asked
 
     asyncio.run(ask())
 

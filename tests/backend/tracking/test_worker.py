@@ -143,6 +143,46 @@ def test_a_backlog_does_not_hold_back_who_is_live(
         assert not settled(engine, backlog, 1201), "the backlog is too short for this test"
 
 
+def test_a_step_that_takes_long_holds_no_other_incident_back(
+    sqlite_url: str,
+    engine: sa.Engine,
+    store: IncidentStore,
+    write: Write,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    begun, enough = threading.Event(), threading.Event()
+
+    class Crowded(Fragile):
+        def fold(self, readings: Sequence[AnyReading], known_t: float = math.inf) -> None:
+            if any(isinstance(reading, Status) and reading.node == "crowd" for reading in readings):
+                begun.set()
+                enough.wait(30.0)
+            super().fold(readings, known_t)
+
+    monkeypatch.setattr(trackers, "create", lambda _, settings: Crowded(settings))
+    monkeypatch.setattr(worker_module, "warm_up", lambda: None)
+    crowded = store.create("crowded", "recorded").id
+    write(crowded, [[Status(t=1.0, node="crowd", battery=0.5)]])
+
+    def watch() -> None:
+        try:
+            assert begun.wait(20.0)
+            other = store.create("other", "recorded").id
+            write(other, [[Status(t=1.0, node="ff1", battery=0.5)]])
+            eventually(lambda: settled(engine, other, 1))
+            assert not settled(engine, crowded, 1)
+        finally:
+            enough.set()
+            signal.raise_signal(signal.SIGTERM)
+
+    async def go() -> None:
+        watching = asyncio.create_task(asyncio.to_thread(watch))
+        await Worker(sqlite_url, None, "", "north", shown_hz=10.0).run()
+        await watching
+
+    asyncio.run(go())
+
+
 def test_new_settings_are_used_for_everything_and_what_was_shown_stays(
     sqlite_url: str, engine: sa.Engine, store: IncidentStore, write: Write
 ) -> None:
