@@ -24,8 +24,9 @@ _PIXELS = """(canvas, {colour, tolerance}) => {
     left = Math.min(left, column); right = Math.max(right, column);
     top = Math.min(top, row); bottom = Math.max(bottom, row);
   }
-  if (count === 0) return {count, x: 0, y: 0, left: 0, right: 0, top: 0, bottom: 0};
-  return {count: count / ratio ** 2, x: x / count / ratio, y: y / count / ratio,
+  const middle_x = canvas.clientWidth / 2, middle_y = canvas.clientHeight / 2;
+  if (count === 0) return {count, x: 0, y: 0, middle_x, middle_y, left: 0, right: 0, top: 0, bottom: 0};
+  return {count: count / ratio ** 2, x: x / count / ratio, y: y / count / ratio, middle_x, middle_y,
           left: left / ratio, right: right / ratio, top: top / ratio, bottom: bottom / ratio};
 }"""
 
@@ -46,15 +47,22 @@ _WIDTH_BETWEEN = """(canvas, {colour, top, bottom}) => {
 
 @dataclass(frozen=True)
 class Pixels:
-    """Where on the map a colour lies (CSS pixels, y downwards): centroid and extent."""
+    """Where on the map a colour lies (CSS pixels, y downwards): centroid and extent, and the map's middle."""
 
     count: float
     x: float
     y: float
+    middle_x: float
+    middle_y: float
     left: float
     right: float
     top: float
     bottom: float
+
+    @property
+    def from_middle(self) -> tuple[float, float]:
+        """Its centroid from the middle of the map, which stays where it is when rows come and go above it."""
+        return self.x - self.middle_x, self.y - self.middle_y
 
     @property
     def width(self) -> float:

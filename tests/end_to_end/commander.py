@@ -1,4 +1,4 @@
-"""The commander before the screen: beside `canvas`, `layout`, `others` alone in knowing the page."""
+"""The commander before the screen: with the parts it is made of, alone in knowing the page."""
 
 import json
 import re
@@ -10,8 +10,11 @@ from urllib.parse import quote, urlencode
 from playwright.sync_api import Locator, Page, WebSocketRoute
 
 from tests.end_to_end.canvas import MapSeen
+from tests.end_to_end.device import DeviceUsed
 from tests.end_to_end.layout import LayoutSeen
+from tests.end_to_end.letting_in import SignInSeen
 from tests.end_to_end.others import OthersSeen
+from tests.end_to_end.past import PastCompared
 from tests.running import eventually
 
 
@@ -25,7 +28,7 @@ class BoardRow:
     error: str
 
 
-class Commander(MapSeen, LayoutSeen, OthersSeen):
+class Commander(MapSeen, LayoutSeen, OthersSeen, PastCompared, SignInSeen, DeviceUsed):
     """What a commander sees and does.
 
     Args:
@@ -84,6 +87,11 @@ class Commander(MapSeen, LayoutSeen, OthersSeen):
             for name, (status, age, level, error) in rows.items()
         }
 
+    @property
+    def board_words(self) -> str:
+        """Everything on the board."""
+        return " ".join(self.page.get_by_test_id("board").inner_text().split())
+
     def sees(self, name: str, status: str, within_s: float = 15.0) -> None:
         """Wait until the board gives a responder that status."""
         eventually(lambda: name in (rows := self.board()) and rows[name].status == status, within_s)
@@ -120,6 +128,10 @@ class Commander(MapSeen, LayoutSeen, OthersSeen):
         """How many responders there are, live, stale, lost, as the top bar says it."""
         return " ".join(self.page.get_by_test_id("counts").inner_text().split())
 
+    def shows_the_next(self, status: str) -> None:
+        """Press how many are stale, or lost, in the top bar."""
+        self.page.get_by_test_id("counts").get_by_role("button", name=re.compile(status)).click()
+
     @property
     def banners(self) -> list[str]:
         """The texts of the alarm banners."""
@@ -155,6 +167,11 @@ class Commander(MapSeen, LayoutSeen, OthersSeen):
         """Whether it is said that the estimator could not go on."""
         return self.page.get_by_test_id("stands-still").is_visible()
 
+    @property
+    def is_behind(self) -> bool:
+        """Whether it is said that the picture lacks what was last reported."""
+        return self.page.get_by_test_id("behind").is_visible()
+
     def hears_that_the_estimator_broke(self) -> None:
         """From the next page on every picture comes with the notice that the server adds when it broke."""
         broke = {"code": "estimator_failed", "t": 0.0, "text": "It broke.", "node": None}
@@ -174,7 +191,7 @@ class Commander(MapSeen, LayoutSeen, OthersSeen):
 
     @property
     def mode(self) -> str:
-        """LIVE, REPLAY, CLOSED, or NOT LIVE."""
+        """LIVE, RECORDED, REPLAY, CLOSED, or NOT LIVE."""
         return self.page.get_by_test_id("clock").locator(".mode").inner_text()
 
     @property

@@ -26,6 +26,14 @@ class LayoutSeen:
         )
         return found
 
+    @property
+    def narrowest_name(self) -> float:
+        """The room of the name that has the least on the board (CSS pixels)."""
+        widths: list[float] = self.page.get_by_test_id("board").evaluate(
+            "(board) => [...board.querySelectorAll('.name')].map((name) => name.clientWidth)"
+        )
+        return min(widths)
+
     def sits_at(self, width: int, height: int) -> None:
         """Use a screen of another size (CSS pixels)."""
         self.page.set_viewport_size({"width": width, "height": height})
@@ -38,8 +46,8 @@ class LayoutSeen:
     def timeline_rows(self) -> int:
         """In how many rows the timeline's buttons lie."""
         tops: list[float] = self.page.get_by_test_id("timeline").evaluate(
-            """(bar) => [...bar.querySelectorAll('button, select')]
-              .map((one) => one.getBoundingClientRect().top)"""
+            """(bar) => [...bar.querySelectorAll('button, select')].map((one) => one.getBoundingClientRect())
+              .filter(({height}) => height > 0).map(({top}) => top)"""
         )
         return len({round(top) for top in tops})
 
@@ -58,6 +66,13 @@ class LayoutSeen:
         return found
 
     @property
+    def top_bar_height(self) -> float:
+        """How high the top bar is (CSS pixels): one row of buttons is 44 px and its edges."""
+        box = self.page.locator("header").bounding_box()
+        assert box is not None
+        return box["height"]
+
+    @property
     def off_the_screen(self) -> list[str]:
         """What reaches beyond the right edge of the screen."""
         found: list[str] = self.page.evaluate(
@@ -70,6 +85,63 @@ class LayoutSeen:
         )
         return found + ([f"the page is {wide} px too wide"] if wide > 0 else [])
 
+    def scrolls_to_the_end(self) -> bool:
+        """Turn the wheel over the top bar as far as it goes; whether the whole timeline is seen then."""
+        self.page.mouse.move(5, 5)
+        self.page.mouse.wheel(0, 10_000)
+        self.page.wait_for_timeout(500)
+        box = self.page.get_by_test_id("timeline").bounding_box()
+        height: float = self.page.evaluate("window.innerHeight")
+        return box is not None and box["y"] >= 0 and box["y"] + box["height"] <= height + 1
+
+    def closes_the_card(self) -> None:
+        """Tap the card's way out, which must lie on the card."""
+        button = self.page.get_by_role("button", name="Close details")
+        card, way_out = self.page.get_by_test_id("card").bounding_box(), button.bounding_box()
+        assert card is not None
+        assert way_out is not None
+        assert way_out["x"] + way_out["width"] <= card["x"] + card["width"]
+        button.click()
+
+    @property
+    def cut_off_counts(self) -> list[str]:
+        """How many are live, stale, lost, as far as it lies under something or beyond the edge of its row."""
+        found: list[str] = self.page.get_by_test_id("counts").evaluate(
+            """(counts) => {
+              const beside = counts.parentElement.querySelector(':scope > button').getBoundingClientRect();
+              return [...counts.children].filter((part) => getComputedStyle(part).position !== 'absolute'
+                && part.getBoundingClientRect().right > beside.left).map((part) => part.textContent);
+            }"""
+        )
+        return found
+
+    @property
+    def too_small_on_a_phone(self) -> list[str]:
+        """What is pressed and is lower or narrower than 44 px, sliders and what is not shown excepted."""
+        found: list[str] = self.page.evaluate(
+            """() => [...document.querySelectorAll('button, select')].filter((part) => {
+              const {width, height} = part.getBoundingClientRect();
+              return height > 0 && Math.min(width, height) < 43.5;
+            }).map((part) => part.textContent.trim().slice(0, 30))"""
+        )
+        return found
+
+    @property
+    def reads_help(self) -> bool:
+        """Whether the help sheet lies over everything."""
+        return self.page.get_by_role("dialog").is_visible()
+
+    @property
+    def slid_px(self) -> float:
+        """How far the page has slid up from where it belongs (CSS pixels)."""
+        top: float = self.page.evaluate("document.querySelector('header').getBoundingClientRect().top")
+        return -top
+
+    def asks_why_here(self) -> None:
+        """Press the card's question what holds the fix, and wait for the answer."""
+        self.page.get_by_test_id("why").get_by_role("button", name="Why here?").click()
+        self.page.get_by_test_id("held").wait_for(timeout=60_000)
+
     @property
     def map_height(self) -> float:
         """How high the map is (CSS pixels)."""
@@ -77,11 +149,28 @@ class LayoutSeen:
         assert box is not None
         return box["height"]
 
+    def is_on_the_board(self, node: str) -> bool:
+        """Whether the whole line of a responder is seen without turning the board."""
+        line, board = (
+            self.page.locator(f'[data-testid=responder][data-node="{node}"]').bounding_box(),
+            self.page.get_by_test_id("board").bounding_box(),
+        )
+        assert line is not None
+        assert board is not None
+        return board["y"] - 1 <= line["y"] and line["y"] + line["height"] <= board["y"] + board["height"] + 1
+
     @property
-    def card_left(self) -> float:
-        """Where the card begins (CSS pixels from the left of the map)."""
-        card = self.page.get_by_test_id("card").bounding_box()
+    def card_on_the_map(self) -> bool:
+        """Whether the card hides a part of the map."""
+        card, seen = (
+            self.page.get_by_test_id("card").bounding_box(),
+            self.page.get_by_test_id("map").bounding_box(),
+        )
         assert card is not None
-        map_box = self.page.get_by_test_id("map").bounding_box()
-        assert map_box is not None
-        return card["x"] - map_box["x"]
+        assert seen is not None
+        return (
+            card["x"] < seen["x"] + seen["width"]
+            and seen["x"] < card["x"] + card["width"]
+            and card["y"] < seen["y"] + seen["height"]
+            and seen["y"] < card["y"] + card["height"]
+        )

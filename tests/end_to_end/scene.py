@@ -1,6 +1,7 @@
 """Readings of a small incident: a base at the entry and crews around it."""
 
 import itertools
+import time
 from collections.abc import Sequence
 from typing import TypeAlias
 
@@ -59,6 +60,13 @@ def heard(post: Post, incident: str, *readings: Reading) -> None:
     seq = answer["seq"]
     assert isinstance(seq, int)
     post.frame(incident, min_seq=seq)
+
+
+def one_inside(post: Post, settings: dict[str, float] | None = None) -> str:
+    """A live incident with a base and one responder, who has just entered; its identifier."""
+    incident, now = post.open_incident(clock="live", settings=settings or {}), time.time()
+    heard(post, incident, base(now), responder(now, "walker", "A", [2, 2, 0]))
+    return incident
 
 
 def recorded(post: Post, incident: str, t: float) -> None:

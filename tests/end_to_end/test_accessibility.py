@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.commander import Commander
-from tests.end_to_end.scene import alarm, base, heard, responder
+from tests.end_to_end.scene import alarm, base, heard, responder, two_on_two_storeys
 from tests.running import Post, Server, eventually, running
 
 THEMES = ["day", "dusk", "night"]
@@ -66,3 +66,18 @@ def test_axe_finds_no_fault_by_day_dusk_and_night(
 
     post.http.close()
     assert {what: faults for what, faults in found.items() if faults} == {}
+
+
+def test_in_the_systems_own_colours_the_chosen_storey_and_an_alarm_are_still_told(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = two_on_two_storeys(post, 1_763_712_345.0)
+    heard(post, incident, alarm(1_763_712_354.0, "ff1"))
+    commander.sees_the_systems_colours()
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.banners)
+    before = commander.storey_colours()
+    assert len(set(before.values())) == 2
+    commander.chooses_storey("First")
+    eventually(lambda: (now := commander.storey_colours())["First"] == before["All"] != now["All"])
+    assert commander.alarm_colour not in before.values()

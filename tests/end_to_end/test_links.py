@@ -79,6 +79,26 @@ def test_a_screen_that_was_opened_before_there_was_an_incident_finds_the_first(
         post = Post(server.url)
         first = post.open_incident("the first")
         heard(post, first, base(T0), responder(T0, "ff1", "A", [2, 2, 0]))
-        eventually(lambda: commander.incident == "the first", within_s=6)
+        eventually(lambda: commander.incident == "the first")
         commander.sees("FF1", "Live")
         post.http.close()
+
+
+def test_a_swipe_back_closes_the_card_and_leaves_neither_the_screen_nor_the_storey(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    older = two_incidents(post)
+    commander.follows_link(server.url, older)
+    commander.selects("ff1")
+    eventually(lambda: "FF1" in commander.card)
+    commander.chooses_storey("First")
+    commander.swipes_back()
+    eventually(lambda: commander.card == "")
+    assert (commander.incident, commander.storey) == ("the older", "First")
+    assert set(commander.board()) == {"FF1"}
+
+    commander.chooses_incident("the newer")
+    eventually(lambda: "FF9" in commander.board())
+    commander.swipes_back()
+    eventually(lambda: "FF1" in commander.board())
+    assert (commander.incident, commander.storey) == ("the older", "First")

@@ -133,31 +133,30 @@ def test_who_is_in_alarm_is_no_shadow_on_any_storey(server: Server, post: Post, 
     assert commander.colour(THIRD_CREW).count > 100
 
 
-def test_on_a_tablet_the_card_does_not_lie_over_the_one_it_is_about(
-    server: Server, post: Post, commander: Commander
+@pytest.mark.parametrize(("width", "height"), [(1024, 768), (800, 1280)])
+def test_whoever_calls_for_help_is_seen_on_the_map_and_on_the_board(
+    server: Server, post: Post, commander: Commander, width: int, height: int
 ) -> None:
     incident = post.open_incident()
-    heard(
-        post,
-        incident,
-        base(T0),
-        responder(T0, "west", "A", [-20, 3, 0]),
-        responder(T0, "in-trouble", "B", [20, -6, 0]),
-        alarm(T0, "in-trouble"),
-    )
-    commander.sits_at_a_tablet()
+    crew = [responder(T0, f"ff{number:02}", "A", [number - 20, 3, 0]) for number in range(30)]
+    in_trouble = responder(T0, "in-trouble", "B", [20, -6, 0])
+    heard(post, incident, base(T0), *crew, in_trouble, alarm(T0, "in-trouble"))
+    commander.sits_at(width, height)
     commander.opens(server.url, incident)
-    commander.turns_trails_off()
     eventually(lambda: commander.banners)
-    commander.settled_mark(SECOND_CREW)
+    assert not commander.is_on_the_board("in-trouble")
+
     commander.goes_to_the_alarm()
     eventually(lambda: "IN-TROUBLE" in commander.card)
-    eventually(lambda: commander.settled_mark(SECOND_CREW).right < commander.card_left - 6)
-
-    # Nor does it once everybody is fitted into the map.
-    commander.presses("f")
-    assert commander.settled_mark(SECOND_CREW).right < commander.card_left - 6
+    eventually(lambda: commander.is_on_the_board("in-trouble"))
+    assert not commander.card_on_the_map
+    assert commander.settled_mark(SECOND_CREW).count > 100
     assert commander.settled_mark(FIRST_CREW).count > 100
+
+    # So is whoever is pressed next, though the card above closes.
+    commander.selects("ff29")
+    eventually(lambda: "FF29" in commander.card)
+    assert commander.is_on_the_board("ff29")
 
 
 def test_the_ellipse_of_a_sure_fix_shows_around_its_mark(

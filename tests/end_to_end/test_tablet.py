@@ -1,4 +1,4 @@
-"""On every screen that a commander has, the timeline is one row, and an alarm takes nobody's map away."""
+"""On every screen of a commander, top bar and timeline take one row each, and alarms leave the map room."""
 
 import pytest
 
@@ -10,6 +10,7 @@ pytestmark = pytest.mark.usefixtures("nothing_left_open")
 
 T0 = 1_763_712_345.0
 LONG_S = 2 * 3600 + 5
+STOREYS = ["Ground", "First", "Second"]
 LUNAR = (
     "Location: second floor, corridor side of room S4, low wall collapsed. Unit: Ladder 3, L3-2. "
     "Name: Novak. Assignment: primary search. Resources: two rescuers and a cutter, air below 150 bar."
@@ -18,18 +19,20 @@ LUNAR = (
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768), (768, 1024)])
 @pytest.mark.parametrize("closed", [False, True], ids=["live", "closed"])
-def test_the_timeline_lies_in_one_row_also_hours_back_in_a_replay(
+def test_top_bar_and_timeline_lie_in_one_row_each_also_hours_back_in_a_replay(
     server: Server, post: Post, commander: Commander, width: int, height: int, closed: bool
 ) -> None:
     incident = post.open_incident()
     heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
-    heard(post, incident, step(T0 + LONG_S, "walker", [1, 0, 0]))
+    crew = [responder(T0 + LONG_S, f"ff{number}", "A", [number, 5, 0]) for number in range(40)]
+    heard(post, incident, step(T0 + LONG_S, "walker", [1, 0, 0]), *crew)
     recorded(post, incident, T0 + LONG_S)
     if closed:
         assert post.http.patch(f"/incidents/{incident}", json={"state": "closed"}).status_code == 200
     commander.sits_at(width, height)
     commander.opens(server.url, incident)
     assert (commander.timeline_rows, commander.timeline_overlaps) == (1, [])
+    assert commander.top_bar_height < 60
 
     commander.scrubs_to(T0 + 2)
     eventually(lambda: commander.mode == "REPLAY" and commander.board())
@@ -74,3 +77,82 @@ def test_however_many_call_for_help_the_map_stays(server: Server, post: Post, co
     commander.opens(server.url, incident)
     eventually(lambda: len(commander.banners) == 8)
     assert commander.map_height >= 0.2 * 768
+
+
+def test_however_long_a_name_is_the_status_and_the_age_are_seen(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    names = ["Hauptlöschgruppenführer Schwarzenberg-Wolkenstein", "x" * 64, "الإطفائي محمد عبد الرحمن"]
+    crew = [
+        responder(T0, f"ff{at}", "A", [4 * at, 2, 0]) | {"callsign": name} for at, name in enumerate(names)
+    ]
+    gone = responder(T0, "gone", "A", [0, 4, 0]) | {"callsign": "Tower 5 E"}
+    heard(post, incident, base(T0), *crew, gone, alarm(T0, "ff0"))
+    heard(post, incident, {"kind": "retire", "t": T0 + 1, "node": "gone"}, step(T0 + 900, "ff0", [0, 0, 0]))
+    commander.sits_at_a_tablet()
+    commander.opens(server.url, incident)
+    eventually(lambda: len(commander.board()) == 4 and commander.board()["Tower 5 E"].age_s > 600)
+    assert (commander.off_the_screen, commander.cut_off()) == ([], [])
+    assert commander.narrowest_name > 75
+    for node in ("ff0", "ff1"):
+        commander.selects(node)
+        commander.closes_the_card()
+
+
+def test_who_asks_why_somebody_is_here_keeps_the_alarms_in_view(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    crew = [f"ff{number}" for number in range(12)]
+    heard(
+        post,
+        incident,
+        base(T0),
+        *(responder(T0, name, "A", [2 * at, 2, 0]) for at, name in enumerate(crew)),
+        alarm(T0, "ff3", text=LUNAR),
+    )
+    heard(post, incident, *(step(T0 + 2, name, [0.5, 0, 0]) for name in crew))
+    recorded(post, incident, T0 + 2)
+    commander.sits_at_a_tablet()
+    commander.opens(server.url, incident)
+    commander.selects("ff1")
+    commander.asks_why_here()
+    assert commander.slid_px == 0
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768)])
+def test_enlarged_to_twice_its_size_the_screen_loses_nothing(
+    server: Server, post: Post, commander: Commander, width: int, height: int
+) -> None:
+    incident = post.open_incident()
+    calls = [alarm(T0, "walker", text=LUNAR), alarm(T0, "walker", kind="pass")]
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]), *calls)
+    commander.sits_at(width // 2, height // 2)
+    commander.opens(server.url, incident)
+    eventually(lambda: len(commander.banners) == 2)
+    assert commander.map_height >= 300
+    assert commander.off_the_screen == []
+    assert commander.scrolls_to_the_end()
+
+
+@pytest.mark.parametrize("called", [False, True], ids=["calm", "mayday"])
+def test_a_crew_leader_with_a_phone_sees_the_map_the_counts_and_every_storey(
+    server: Server, post: Post, commander: Commander, called: bool
+) -> None:
+    levels = [{"level": at, "name": f"{name} floor", "up_m": 3.0 * at} for at, name in enumerate(STOREYS)]
+    incident = post.open_incident("A fire in a house with a long name", levels=levels)
+    crew = [responder(T0, f"ff{at}", "A", [2 * at, 2, 0]) for at in range(4)]
+    calls = [alarm(T0, "ff1", text=LUNAR)] if called else []
+    heard(post, incident, base(T0), *crew, *calls)
+    heard(post, incident, step(T0 + 30, "ff0", [1, 0, 0]))
+    recorded(post, incident, T0 + 30)
+    commander.sits_at(390, 844)
+    commander.opens(server.url, incident)
+    eventually(lambda: len(commander.banners) == int(called))
+    assert (commander.off_the_screen, commander.cut_off()) == ([], [])
+    assert commander.top_bar_height < 110
+    assert commander.timeline_rows == 2
+    assert commander.map_height >= (150 if called else 300)
+    assert commander.cut_off_counts == []
+    assert commander.too_small_on_a_phone == []

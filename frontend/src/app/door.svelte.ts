@@ -12,7 +12,7 @@ export interface DoorOwner {
   readonly pastT: number | null;
   /** That the server cannot be reached is said over everything already. */
   readonly lossIsSaid: boolean;
-  open(incident: Incident, link: DeepLink): Promise<void>;
+  open(incident: Incident, link: DeepLink): void;
   renewed(incident: Incident): void;
 }
 
@@ -58,7 +58,7 @@ export class Door {
       const incident = await api.incident(link.incident);
       this.trouble = null;
       this.left = left;
-      await this.owner.open(incident, link);
+      this.owner.open(incident, link);
     } catch (cause) {
       this.deadLink = cause instanceof api.RequestFailed && cause.status === 404;
       this.fail(cause);

@@ -5,8 +5,6 @@ import type { DeltaMessage, FrameMessage, HeartbeatMessage } from "../domain/typ
 import { type LinkState, NOT_CONNECTED, type Source } from "../sources/source";
 
 const STANDING: IncidentClock = { t: 0, localMs: 0, rate: 0 };
-/** A link that has just been begun is not lost yet (ms). */
-const PATIENCE_MS = 1500;
 
 export interface FeedOwner {
   /** Incident seconds per local second, between two messages. */
@@ -24,14 +22,12 @@ export class Feed {
   link = $state.raw<LinkState>(NOT_CONNECTED);
   clock = $state.raw<IncidentClock>(STANDING);
   private source: Source | null = null;
-  private begunMs = $state.raw(Number.POSITIVE_INFINITY);
 
   constructor(private readonly owner: FeedOwner) {}
 
   follow(source: Source): void {
     this.leave();
     this.source = source;
-    this.begunMs = performance.now();
     source.subscribe({
       frame: (message, t) => this.take(message, pictureOf(message), t),
       delta: (message, t) => {
@@ -51,9 +47,8 @@ export class Feed {
     });
   }
 
-  /** Whether nothing is heard of it at local time `localMs`. */
-  isLost(localMs: number): boolean {
-    if (this.link.link === "connecting") return localMs - this.begunMs > PATIENCE_MS;
+  /** Whether nothing is heard of it. The first attempt is no loss before it has failed, or said nothing for long. */
+  get isLost(): boolean {
     return this.link.link === "lost";
   }
 
@@ -64,7 +59,11 @@ export class Feed {
     this.picture = null;
     this.link = NOT_CONNECTED;
     this.clock = STANDING;
-    this.begunMs = Number.POSITIVE_INFINITY;
+  }
+
+  /** What is shown is of another moment than the one that is asked for, and nothing comes in its place. */
+  blank(): void {
+    this.picture = null;
   }
 
   /** Incident time is `t` now, and goes on from there. */

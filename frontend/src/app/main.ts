@@ -3,6 +3,7 @@ import { parseDeepLink, takeToken } from "../domain/deep-link";
 import { signIn } from "../sources/api";
 import "../ui/base.css";
 import App from "./App.svelte";
+import { Address } from "./address";
 import { Screen } from "./screen.svelte";
 
 const target = document.getElementById("app");
@@ -16,6 +17,7 @@ if (token !== null) {
 
 // Read before anything writes the address.
 const screen = new Screen(parseDeepLink(window.location.hash));
-window.addEventListener("hashchange", () => void screen.door.follow(parseDeepLink(window.location.hash)));
-mount(App, { target, props: { screen } });
+const address = new Address(window);
+window.addEventListener("popstate", (event) => screen.travel(address.read(event.state)));
+mount(App, { target, props: { screen, address } });
 void screen.door.begin();

@@ -17,13 +17,14 @@ export class Replay {
   on = $state(false);
   paused = $state(false);
   speed = $state(1);
-  readonly feed = new Feed({
-    rate: () => (this.paused ? 0 : this.speed),
+  readonly feed: Feed = new Feed({
+    rate: () => (this.paused || this.feed.isLost ? 0 : this.speed),
     changed: () => undefined,
     heartbeat: ({ ended }) => {
       if (ended) this.paused = true;
     },
-    lost: () => undefined,
+    // The past does not age because nobody tells of it: it stands still until it is heard again.
+    lost: () => this.feed.keepTime(this.owner.now),
     back: () => undefined,
   });
   private source: ReplaySource | null = null;
@@ -65,6 +66,7 @@ export class Replay {
       return;
     }
     this.source.seek(at);
+    if (this.feed.isLost) this.feed.blank();
     this.feed.keepTime(at);
   }
 

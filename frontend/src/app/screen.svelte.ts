@@ -2,11 +2,13 @@
 import { alarmByNode, inOrder, type StandingAlarms, standingAlarms } from "../domain/alarms";
 import { incidentTime } from "../domain/clock";
 import { crewMarks } from "../domain/crews";
-import { type DeepLink, formatDeepLink, NOTHING } from "../domain/deep-link";
+import { type DeepLink, NOTHING } from "../domain/deep-link";
 import { blindElsewhere, callsElsewhere } from "../domain/elsewhere";
+import { knownNow } from "../domain/known-now";
 import type { LevelChoice } from "../domain/levels";
 import { presenceOf } from "../domain/presence";
 import { isMoving, limitsOf, whileUnheard } from "../domain/staleness";
+import { withStoreysAged } from "../domain/storey-age";
 import { type Extent, extentOf } from "../domain/timeline";
 import { Trails } from "../domain/trails";
 import type { DeltaMessage, FrameMessage, Incident, Track } from "../domain/types";
@@ -18,12 +20,16 @@ import { Asking } from "./asking";
 import { Door, type DoorOwner } from "./door.svelte";
 import { Elsewhere } from "./elsewhere.svelte";
 import { Feed } from "./feed.svelte";
+import { KnownNow } from "./known-now.svelte";
 import { Marks } from "./marks.svelte";
 import { Replay, type ReplayOwner } from "./replay.svelte";
 
 const TICK_MS = 250;
 /** Trails are filled with as much of the past when an incident is opened (s). */
 const PAST_S = 1800;
+/** Centimetres are less than a trail's line is wide. */
+const TRAIL_DECIMALS = 2;
+const COMPARED_DECIMALS = 3;
 
 export class Screen implements DoorOwner, ReplayOwner {
   incident = $state.raw<Incident | null>(null);
@@ -43,6 +49,8 @@ export class Screen implements DoorOwner, ReplayOwner {
   private trackList = $state.raw<readonly Track[]>([]);
   /** First moment of the incident that this screen has seen (Unix s). */
   private earliestT = $state(Number.POSITIVE_INFINITY);
+  /** The incident whose past is read as soon as its present is seen. */
+  private pastOf: string | null = null;
   /** What the address named when the page was opened. */
   private readonly wanted = $state.raw<DeepLink>(NOTHING);
 
@@ -56,6 +64,9 @@ export class Screen implements DoorOwner, ReplayOwner {
   });
   readonly door: Door = new Door(this);
   readonly replay: Replay = new Replay(this);
+  readonly compare = new KnownNow((from, to, signal) =>
+    api.tracks(this.incident?.id ?? "", { view: "smoothed", from, to, decimals: COMPARED_DECIMALS }, signal),
+  );
   private readonly asking = new Asking(this, this.door);
   private readonly elsewhere = new Elsewhere(
     { active: api.activeIncidents, frame: api.frame },
@@ -65,30 +76,45 @@ export class Screen implements DoorOwner, ReplayOwner {
 
   readonly mode = $derived<"live" | "replay">(this.replay.on ? "replay" : "live");
   private readonly feed = $derived(this.replay.on ? this.replay.feed : this.live);
-  readonly picture = $derived(this.feed.picture);
+  readonly levels = $derived(this.incident?.levels ?? []);
+  /** Incident time (Unix s). */
+  readonly now = $derived(incidentTime(this.feed.clock, this.localMs));
+  readonly liveNow = $derived(incidentTime(this.live.clock, this.localMs));
+  readonly picture = $derived(withStoreysAged(this.feed.picture, this.now, this.levels));
   /** As the incident is now, also while its past is looked at: a live alarm has the live place. */
-  readonly livePicture = $derived(this.live.picture);
+  readonly livePicture = $derived(withStoreysAged(this.live.picture, this.liveNow, this.levels));
   /** The link that is lost, if one is: of what is shown, or the live one, by which alarms come. */
   readonly lostLink = $derived(
-    this.incident === null
-      ? null
-      : ([this.live, this.feed].find((feed) => feed.isLost(this.localMs))?.link ?? null),
+    this.incident === null ? null : ([this.live, this.feed].find((feed) => feed.isLost)?.link ?? null),
   );
   readonly closed = $derived(this.incident?.state === "closed");
+  readonly recorded = $derived(this.incident?.clock === "recorded");
+  /** What the live picture tells is of now. */
+  readonly liveIsHeard = $derived(
+    !this.live.isLost &&
+      this.live.picture !== null &&
+      !this.live.picture.standsStill &&
+      !this.live.picture.behind,
+  );
   readonly presence = $derived(
     presenceOf({
       replay: this.replay.on,
       closed: this.closed,
-      heard: this.lostLink === null && this.live.picture !== null && !this.live.picture.standsStill,
+      recorded: this.recorded,
+      heard: this.lostLink === null && this.liveIsHeard,
     }),
   );
-  /** Incident time (Unix s). */
-  readonly now = $derived(incidentTime(this.feed.clock, this.localMs));
-  readonly liveNow = $derived(incidentTime(this.live.clock, this.localMs));
+  /** It is known who is there: that nobody is must not be said of a picture that has not come. */
+  readonly whoIsKnown = $derived(
+    this.picture !== null && (this.presence !== "unheard" || this.picture.nodes.size > 0),
+  );
+  /** Where everybody was at the moment of the past that is shown, as known now; of nobody where that is not wanted. */
+  readonly knownNow = $derived(
+    knownNow(this.replay.on ? this.compare.tracks : [], this.picture, this.now, this.levels),
+  );
   readonly limits = $derived(
     this.presence === "unheard" ? whileUnheard(limitsOf(this.incident)) : limitsOf(this.incident),
   );
-  readonly levels = $derived(this.incident?.levels ?? []);
   readonly crews = $derived(crewMarks([...(this.picture?.nodes.values() ?? [])].map(({ state }) => state)));
   readonly alarmList = $derived(inOrder(this.standing));
   /** Who is in alarm in what is shown. */
@@ -119,7 +145,6 @@ export class Screen implements DoorOwner, ReplayOwner {
           level: this.level,
         },
   );
-  readonly address = $derived(formatDeepLink(this.shown));
   readonly pastT = $derived(this.replay.on ? this.now : null);
   readonly lossIsSaid = $derived(this.lostLink !== null);
   readonly callsElsewhere = $derived(
@@ -141,10 +166,10 @@ export class Screen implements DoorOwner, ReplayOwner {
   }
 
   /** Shows an incident, as the link has it. */
-  async open(incident: Incident, { t, node, level }: DeepLink): Promise<void> {
+  open(incident: Incident, { t, node, level }: DeepLink): void {
     const { id } = incident;
     if (this.incident !== null) this.elsewhere.forget(this.incident.id);
-    this.replay.end();
+    this.goLive();
     this.incident = incident;
     this.standing = new Map();
     this.marks.clear();
@@ -155,10 +180,21 @@ export class Screen implements DoorOwner, ReplayOwner {
     this.earliestT = Number.POSITIVE_INFINITY;
     this.live.follow(new LiveSource(id));
     if (t !== null) this.replay.begin(t, true);
-    await this.fillPast(id);
-    if (this.incident.id !== id) return;
-    // What is in the picture by now was logged before it.
-    void this.marks.readPast(id, Math.max(this.incident.last_seq, this.livePicture?.seq ?? 0));
+    this.pastOf = id;
+  }
+
+  /** Shows what an address names, without opening the incident again that is open already. */
+  travel(link: DeepLink): void {
+    if (this.incident === null || link.incident !== this.incident.id) {
+      void this.door.follow(link);
+      return;
+    }
+    const { t } = link;
+    this.selected = link.node;
+    this.level = link.level;
+    if (t === this.shown.t) return;
+    if (t === null) this.goLive();
+    else this.replay.begin(t, true);
   }
 
   renewed(incident: Incident): void {
@@ -167,6 +203,7 @@ export class Screen implements DoorOwner, ReplayOwner {
 
   /** Back to what is now. */
   goLive(): void {
+    this.compare.leave();
     this.replay.end();
   }
 
@@ -176,6 +213,10 @@ export class Screen implements DoorOwner, ReplayOwner {
   }
 
   private liveChanged(message: FrameMessage | DeltaMessage): void {
+    if (this.pastOf === message.incident) {
+      this.pastOf = null;
+      void this.readPast(message.incident).catch((cause) => this.door.fail(cause));
+    }
     if (message.nodes.length > 0) this.earliestT = Math.min(this.earliestT, message.clock_t);
     this.standing = standingAlarms(message.alarms);
     this.marks.seen(message);
@@ -184,10 +225,22 @@ export class Screen implements DoorOwner, ReplayOwner {
     }
   }
 
+  /** What was before comes after what is now: over a slow link it takes many times as long. */
+  private async readPast(id: string): Promise<void> {
+    // What is in the picture by now was logged before it.
+    const marked = this.marks.readPast(
+      id,
+      Math.max(this.incident?.last_seq ?? 0, this.livePicture?.seq ?? 0),
+    );
+    await Promise.all([marked, this.fillPast(id)]);
+  }
+
   private async fillPast(id: string): Promise<void> {
     const last = this.incident?.last_t;
     const list = await api.tracks(id, {
+      view: "live",
       step: 2,
+      decimals: TRAIL_DECIMALS,
       ...(last == null ? {} : { from: Math.max(0, last - PAST_S) }),
     });
     if (this.incident?.id !== id) return;

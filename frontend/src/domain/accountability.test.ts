@@ -1,5 +1,12 @@
 import { expect, test } from "vitest";
-import { board, boardCounts, neighbourOnBoard, radioCounts } from "./accountability";
+import {
+  board,
+  boardCounts,
+  neighbourOnBoard,
+  nextOfStatus,
+  radioCounts,
+  withoutFix,
+} from "./accountability";
 import { aNode, anAlarm, NOON, pictureWith, STOREYS } from "./samples";
 import { DEFAULT_LIMITS } from "./staleness";
 
@@ -63,4 +70,32 @@ test("next and previous go round the board in its order", () => {
   expect(neighbourOnBoard(crews, "ff5", 1)).toBe("ff2");
   expect(neighbourOnBoard(crews, "u1", 1)).toBe("ff3");
   expect(neighbourOnBoard([], "ff1", 1)).toBeNull();
+});
+
+test("of those who are lost the next one on the board is found, going round; aircraft are none of them", () => {
+  const later = board(picture, NOON + 70, STOREYS, DEFAULT_LIMITS, alarms);
+  const lost = ["ff3", "ff4", "ff2", "ff10", "ff9"];
+  expect(nextOfStatus(later, null, "lost")).toBe("ff3");
+  for (const [at, node] of lost.entries()) {
+    expect(nextOfStatus(later, node, "lost")).toBe(lost[(at + 1) % lost.length]);
+  }
+  expect(nextOfStatus(later, "u1", "lost")).toBe("ff3");
+  expect(nextOfStatus(later, "ff3", "stale")).toBeNull();
+});
+
+test("whoever has no position yet is named, as the map cannot show him; who has left is not", () => {
+  const nowhere = { position_m: null, covariance_m2: null };
+  const some = pictureWith(
+    aNode({ node: "ff1", callsign: "E7-1" }),
+    aNode({ node: "ff2", callsign: "E7-2", ...nowhere }),
+    aNode({ node: "ff3", callsign: "E7-3", status: "retired", ...nowhere }),
+    aNode({ node: "u1", role: "uav", ...nowhere }),
+  );
+  expect(withoutFix(board(some, NOON, STOREYS, DEFAULT_LIMITS, new Map()))).toEqual(["E7-2"]);
+});
+
+test("crews stand in the order of their numbers", () => {
+  const engines = ["Engine 10", "Engine 2", "Engine 1"].map((crew) => aNode({ node: crew, crew }));
+  const rows = board(pictureWith(...engines), NOON, STOREYS, DEFAULT_LIMITS, new Map());
+  expect(rows.map(({ crew }) => crew)).toEqual(["Engine 1", "Engine 2", "Engine 10"]);
 });

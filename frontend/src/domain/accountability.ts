@@ -74,7 +74,7 @@ export function board(
   }
   return [...crews]
     .map(([crew, rows]) => ({ crew, rows: rows.sort(byName) }))
-    .sort((a, b) => crewRank(a.crew) - crewRank(b.crew) || a.crew.localeCompare(b.crew));
+    .sort((a, b) => crewRank(a.crew) - crewRank(b.crew) || byNumber(a.crew, b.crew));
 }
 
 /** How many responders there are, and how many of them are live, stale, lost or have left. */
@@ -92,6 +92,14 @@ export function boardCounts(crews: readonly BoardCrew[]): BoardCounts {
     }
   }
   return counts;
+}
+
+/** The names of the responders who are nowhere on the map: their position is not decided yet. */
+export function withoutFix(crews: readonly BoardCrew[]): string[] {
+  return crews
+    .flatMap(({ rows }) => rows)
+    .filter(({ state, status }) => state.role === "responder" && status !== "retired" && !state.position_m)
+    .map(({ name }) => name);
 }
 
 /** Radios that stand: how many, and the names of those that moved or fell silent. */
@@ -132,10 +140,29 @@ export function neighbourOnBoard(
   return nodes[(from + step + nodes.length) % nodes.length] ?? null;
 }
 
+/** The next responder of that status after the selected one, going round: who is lost must be found among fifty. */
+export function nextOfStatus(
+  crews: readonly BoardCrew[],
+  selected: string | null,
+  status: Status,
+): string | null {
+  const rows = crews.flatMap((crew) => crew.rows);
+  const after = rows.findIndex(({ node }) => node === selected) + 1;
+  const found = [...rows.slice(after), ...rows.slice(0, after)].find(
+    (row) => row.state.role === "responder" && row.status === status,
+  );
+  return found?.node ?? null;
+}
+
 function crewRank(crew: string): number {
   return crew === UAVS ? 2 : crew === NO_CREW ? 1 : 0;
 }
 
 function byName(a: BoardRow, b: BoardRow): number {
-  return a.name.localeCompare(b.name, undefined, { numeric: true });
+  return byNumber(a.name, b.name);
+}
+
+/** "Engine 9" before "Engine 10". */
+function byNumber(a: string, b: string): number {
+  return a.localeCompare(b, undefined, { numeric: true });
 }

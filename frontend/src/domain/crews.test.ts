@@ -21,9 +21,22 @@ test("crews get the same marks in whatever order they come, so that all screens 
   expect([...crews("E7", "E5", "T1")]).toEqual([...crews("T1", "E5", "E7")]);
 });
 
-test("a mark carries letters of its crew as well as a colour", () => {
-  expect(crews("Truck 12").get("Truck 12")?.letters).toBe("Tru");
-  expect(crews("!").get("!")?.letters).toBe("?");
+test.each([
+  ["E7", "E7"],
+  ["Truck 12", "T12"],
+  ["Engine Company 7", "EC7"],
+  ["Battalion 1204", "204"],
+  ["Attack North", "AN"],
+  ["Rescue", "Res"],
+  ["!", "?"],
+])("a mark carries letters of its crew as well as a colour: of %s %s", (crew, letters) => {
+  expect(crews(crew).get(crew)?.letters).toBe(letters);
+});
+
+test("of more crews of one kind than there are colours, no two have the same mark", () => {
+  const names = Array.from({ length: 12 }, (_, at) => `Engine ${at + 1}`);
+  const marks = [...crews(...names).values()].map(({ letters, colour }) => `${letters} ${colour}`);
+  expect(new Set(marks).size).toBe(names.length);
 });
 
 test("letters can be read on every crew's colour", () => {

@@ -29,6 +29,20 @@ function lettersOf(name: string): string {
   return name.replace(/[^\p{L}\p{N}]/gu, "");
 }
 
+/**
+ * "E7" of "Engine 7", "C10" of "Crew 10", "AN" of "Attack North", "Res" of "Rescue": the number tells crews of one
+ * kind apart, and there are more crews than colours.
+ */
+function crewLetters(name: string): string {
+  const all = lettersOf(name);
+  if ([...all].length <= ROOM) return all || "?";
+  const number = name.match(/\p{N}+/gu)?.at(-1) ?? "";
+  const words = name.slice(0, number === "" ? undefined : name.lastIndexOf(number)).match(/\p{L}+/gu) ?? [];
+  if (number === "" && words.length === 1) return [...all].slice(0, ROOM).join("");
+  const initials = words.map((word) => [...word][0]).join("");
+  return initials.slice(0, Math.max(0, ROOM - number.length)) + number.slice(-ROOM);
+}
+
 /** A mark for each crew; colours go round in the order of the names, so all screens agree. */
 export function crewMarks(nodes: Iterable<FrameNode>): Map<string, CrewMark> {
   const names = new Set<string>();
@@ -37,7 +51,7 @@ export function crewMarks(nodes: Iterable<FrameNode>): Map<string, CrewMark> {
   for (const crew of [...names].sort((a, b) => a.localeCompare(b))) {
     const colours = COLOURS[marks.size % COLOURS.length] ?? NO_CREW;
     marks.set(crew, {
-      letters: lettersOf(crew).slice(0, ROOM) || "?",
+      letters: crewLetters(crew),
       colour: colours.colour,
       ink: colours.ink,
     });

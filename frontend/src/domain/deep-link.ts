@@ -34,6 +34,12 @@ export function formatDeepLink(link: DeepLink): string {
   return text === "" ? "" : `#${text}`;
 }
 
+/** Whether going from one to the other is a step that one may want to take back: to another incident, to a card. */
+export function isStep(before: DeepLink, after: DeepLink): boolean {
+  if (before.incident !== after.incident) return before.incident !== null;
+  return before.node === null && after.node !== null;
+}
+
 /** Takes `token=` out of a hash: the token, and the hash without it. */
 export function takeToken(hash: string): { token: string | null; rest: string } {
   const fields = new URLSearchParams(hash.replace(/^#/, ""));

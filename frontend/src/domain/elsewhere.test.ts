@@ -8,7 +8,7 @@ import {
   toLookInto,
   unansweredInWords,
 } from "./elsewhere";
-import { A_BREAK, aFrame, aNode, anAlarm, anIncident, NOON } from "./samples";
+import { A_BREAK, A_DELAY, aFrame, aNode, anAlarm, anIncident, NOON } from "./samples";
 import type { FrameAlarm, Incident } from "./types";
 
 const HERE = anIncident({ id: "here", last_seq: 9 });
@@ -71,12 +71,15 @@ describe("a call for help in another incident", () => {
   });
 });
 
-test("where the estimator could not go on, no call would be seen: that is told", () => {
-  const still = glimpseOf(MILL, aFrame([E9], { notices: [A_BREAK] }), 1000);
-  const glimpses = new Map([["mill", still] as const, seen(DOCK)]);
-  expect(blindElsewhere([HERE, MILL, DOCK], "here", glimpses)).toEqual(["Mill fire"]);
-  expect(blindElsewhere([HERE, MILL, DOCK], "mill", glimpses)).toEqual([]);
-});
+test.each([A_BREAK, A_DELAY])(
+  "where the picture is not of now, no call would be seen: that is told",
+  (why) => {
+    const still = glimpseOf(MILL, aFrame([E9], { notices: [why] }), 1000);
+    const glimpses = new Map([["mill", still] as const, seen(DOCK)]);
+    expect(blindElsewhere([HERE, MILL, DOCK], "here", glimpses)).toEqual(["Mill fire"]);
+    expect(blindElsewhere([HERE, MILL, DOCK], "mill", glimpses)).toEqual([]);
+  },
+);
 
 test("it is said aloud as long as nobody has answered, in words that do not count the seconds", () => {
   expect(unansweredInWords(calls(seen(MILL, mayday)))).toBe("MAYDAY E9-1 in Mill fire.");

@@ -1,7 +1,7 @@
 /** Calls for help in incidents other than the one that is shown. */
 import { byUrgency, inOrder, isCall, type StandingAlarm, standingAlarms } from "./alarms";
 import { type IncidentClock, incidentTime } from "./clock";
-import { standsStill } from "./picture";
+import { isBehind, standsStill } from "./picture";
 import type { FrameAlarm, FrameMessage, FrameNode, Incident } from "./types";
 import { alarmWord, nameOf } from "./words";
 
@@ -23,8 +23,8 @@ export interface Glimpse {
   /** Who calls: the spoken name of each node in `calls`. */
   readonly names: ReadonlyMap<string, string>;
   readonly clock: IncidentClock;
-  /** A call that comes now would not be seen: the estimator there could not go on. */
-  readonly standsStill: boolean;
+  /** A call that comes now would not be seen: the estimator there could not go on, or is behind. */
+  readonly blind: boolean;
 }
 
 /** What the screen says of one other incident in which somebody calls for help. */
@@ -46,7 +46,13 @@ export function glimpseOf(incident: Incident, frame: Shown, localMs: number): Gl
     .filter(({ node }) => calling.has(node))
     .map((node): [string, string] => [node.node, nameOf(node)]);
   const clock = { t: frame.clock_t, localMs, rate: incident.clock === "live" ? 1 : 0 };
-  return { seq: frame.seq, calls, names: new Map(names), clock, standsStill: standsStill(frame) };
+  return {
+    seq: frame.seq,
+    calls,
+    names: new Map(names),
+    clock,
+    blind: standsStill(frame) || isBehind(frame),
+  };
 }
 
 /** The incidents to be looked into: a call is a reading, so without a new entry in the log there is none. */
@@ -81,7 +87,7 @@ export function blindElsewhere(
   shown: string | null,
   glimpses: ReadonlyMap<string, Glimpse>,
 ): string[] {
-  return active.filter(({ id }) => id !== shown && glimpses.get(id)?.standsStill).map(({ name }) => name);
+  return active.filter(({ id }) => id !== shown && glimpses.get(id)?.blind).map(({ name }) => name);
 }
 
 /** How long ago it was called (s). */

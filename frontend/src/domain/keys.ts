@@ -4,6 +4,7 @@ export type Act =
   | { do: "playPause" }
   | { do: "step"; seconds: number }
   | { do: "faster" | "slower" }
+  | { do: "compare" }
   | { do: "backToLive" }
   | { do: "zoom"; factor: number }
   | { do: "pan"; dx: number; dy: number }
@@ -34,6 +35,7 @@ const KEYS: Record<string, Act> = {
   ArrowDown: { do: "slower" },
   j: { do: "step", seconds: -10 },
   l: { do: "step", seconds: 10 },
+  k: { do: "compare" },
   b: { do: "backToLive" },
   "+": { do: "zoom", factor: ZOOM_STEP },
   "=": { do: "zoom", factor: ZOOM_STEP },
@@ -74,6 +76,7 @@ export const KEY_HELP: readonly (readonly [keys: string, does: string])[] = [
   ["← →", "1 s back, 1 s on"],
   ["J L", "10 s back, 10 s on"],
   ["↑ ↓", "Faster, slower"],
+  ["K", "In a replay: beside what was shown then, what is known now"],
   ["B", "Back to live"],
   ["+ −", "Zoom in, zoom out"],
   ["Shift + arrows", "Move the map"],

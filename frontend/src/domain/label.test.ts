@@ -9,6 +9,7 @@ const ALL: Labelled = {
   levels: STOREYS,
   level: "all",
   alarms: new Map(),
+  narrow: false,
 };
 const upstairs = aNode({ level: 1, level_p: 0.99 });
 
@@ -20,6 +21,12 @@ test("where there is no room it says who and how old, and a storey only if that 
   expect(labelWords(upstairs, ALL).short).toBe("E7-1 · 3 s");
   expect(labelWords(aNode({ level: 1, level_p: 0.64 }), ALL).short).toBe("E7-1 · 3 s · Level 1, 64 %");
   expect(labelWords(upstairs, { ...ALL, now: NOON + 20 }).short).toBe("E7-1 · STALE 20 s");
+});
+
+test("on a phone's map it says that the storey is not sure, for which one there is no room", () => {
+  const narrow = { ...ALL, narrow: true };
+  expect(labelWords(aNode({ level: 1, level_p: 0.64 }), narrow).short).toBe("E7-1 · 3 s · storey?");
+  expect(labelWords(upstairs, narrow).short).toBe("E7-1 · 3 s");
 });
 
 test("a storey that is not sure is said with its probability, also where that storey is shown", () => {
@@ -46,4 +53,21 @@ test("what is no longer live says so, and nothing is while the server is not hea
   expect(labelWords(upstairs, { ...ALL, limits: whileUnheard(DEFAULT_LIMITS) }).whole[1]).toBe(
     "STALE 3 s · Level 1",
   );
+});
+
+test("an age stays behind a name that is written from the right", () => {
+  const david = aNode({ callsign: "דוד", level: 1, level_p: 0.99 });
+  expect(labelWords(david, ALL).short).toBe("\u2068דוד\u2069 · 3 s");
+});
+
+test("a long name gives way in its middle, not to the age", () => {
+  const { whole, short } = labelWords(aNode({ callsign: "Hauptlöschgruppenführer Wolkenstein" }), ALL);
+  expect(whole[0]).toBe("Hauptlösch…olkenstein");
+  expect(short).toBe("Hauptlösch…olkenstein · 3 s");
+});
+
+test("of who calls for help and is not tracked any more it is said that he is not", () => {
+  const alarms = new Map([["ff1", anAlarm()]]);
+  const gone = aNode({ level: 1, level_p: 0.99, status: "retired" });
+  expect(labelWords(gone, { ...ALL, alarms }).short).toBe("E7-1 MAYDAY · NOT TRACKED 3 s");
 });

@@ -2,7 +2,7 @@
 import { type LevelChoice, levelOf, storeyUnsure, storeyWords } from "./levels";
 import { ageS, type StalenessLimits, statusAt } from "./staleness";
 import type { FrameAlarm, FrameNode, Level } from "./types";
-import { alarmWord, nameOf, shortAge, statusWord } from "./words";
+import { alarmWord, nameInText, nameOf, shortAge, statusWord } from "./words";
 
 export interface Labelled {
   /** Incident time (Unix s). */
@@ -12,6 +12,8 @@ export interface Labelled {
   /** The storey that the map shows. */
   readonly level: LevelChoice;
   readonly alarms: ReadonlyMap<string, FrameAlarm>;
+  /** The map is a phone's: that a storey is not sure is said, not which one it may be. */
+  readonly narrow: boolean;
 }
 
 export interface LabelWords {
@@ -21,15 +23,19 @@ export interface LabelWords {
   readonly short: string;
 }
 
-export function labelWords(node: FrameNode, { now, limits, levels, level, alarms }: Labelled): LabelWords {
+export function labelWords(
+  node: FrameNode,
+  { now, limits, levels, level, alarms, narrow }: Labelled,
+): LabelWords {
   const status = statusAt(node, now, limits);
   const alarm = alarms.get(node.node);
   const age = shortAge(ageS(node, now));
-  const name = alarm ? `${nameOf(node)} ${alarmWord(alarm.alarm)}` : nameOf(node);
+  const callsign = nameInText(nameOf(node));
+  const name = alarm ? `${callsign} ${alarmWord(alarm.alarm)}` : callsign;
   const old = status === "live" ? age : `${statusWord(status).toUpperCase()} ${age}`;
   const said = saysStorey(node, level, levels);
   const storey = ` · ${storeyWords(node, levels)}`;
-  const short = `${name} · ${old}${said && storeyUnsure(node) ? storey : ""}`;
+  const short = `${name} · ${old}${said && storeyUnsure(node) ? (narrow ? " · storey?" : storey) : ""}`;
   return { whole: [name, said ? old + storey : old], short };
 }
 

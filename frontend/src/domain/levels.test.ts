@@ -31,7 +31,7 @@ test.each([
 });
 
 test("an unknown storey says so", () => {
-  expect(storeyWords(aNode({ position_m: null }), STOREYS)).toBe("level unknown");
+  expect(storeyWords(aNode({ position_m: null }), STOREYS)).toBe("storey not known");
 });
 
 const picture = pictureWith(

@@ -24,12 +24,11 @@ interface LogLine {
   readonly readings: readonly Record<string, unknown>[];
 }
 
-/** Hardly any line has one of these: most need not be understood. */
-const TELLING = ['"alarm"', '"drop"', '"breadcrumb"'];
+/** The kinds of readings that tell of events: lines without any need not come. */
+export const EVENTS = ["alarm", "drop", "node"] as const;
 
 /** What a line says, readings that were set aside excepted. */
 export function loggedIn(line: string): Logged {
-  if (!TELLING.some((word) => line.includes(word))) return { alarms: [], drops: [] };
   const { seq, rejected, readings } = JSON.parse(line) as LogLine;
   const aside = new Set(rejected?.map(({ index }) => index));
   const taken = readings.filter((_, index) => !aside.has(index));

@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import { pictureOf, withDelta } from "./picture";
-import { A_BREAK, aDelta, aFrame, aNode, anAlarm, NOON } from "./samples";
+import { A_BREAK, A_DELAY, aDelta, aFrame, aNode, anAlarm, NOON } from "./samples";
 
 const before = pictureOf(aFrame([aNode(), aNode({ node: "ff2" })], { alarms: [anAlarm()] }));
 
@@ -33,6 +33,11 @@ test("a picture stands still as long as the server says that the estimator could
     true,
     false,
   ]);
+});
+
+test("a picture is behind as long as the server says that something reported is not in it", () => {
+  const behind = withDelta(before, aDelta([], { notices: [A_DELAY] }));
+  expect([before.behind, behind.behind, withDelta(behind, aDelta([])).behind]).toEqual([false, true, false]);
 });
 
 test("the picture before a delta stays as it was", () => {

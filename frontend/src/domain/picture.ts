@@ -17,10 +17,16 @@ export interface Picture {
   readonly alarms: readonly FrameAlarm[];
   /** The incident's estimator could not go on: nothing that is reported since is in the picture, no alarm either. */
   readonly standsStill: boolean;
+  /** What was last reported is not in the picture yet, and has not been for seconds: an alarm may be missing. */
+  readonly behind: boolean;
 }
 
 export function standsStill({ notices }: Pick<FrameMessage, "notices">): boolean {
   return notices.some(({ code }) => code === "estimator_failed");
+}
+
+export function isBehind({ notices }: Pick<FrameMessage, "notices">): boolean {
+  return notices.some(({ code }) => code === "estimator_behind");
 }
 
 /** The picture that a whole frame shows. */
@@ -35,6 +41,7 @@ export function pictureOf(frame: FrameMessage): Picture {
     nodes,
     alarms: frame.alarms,
     standsStill: standsStill(frame),
+    behind: isBehind(frame),
   };
 }
 
@@ -50,5 +57,6 @@ export function withDelta(picture: Picture, delta: DeltaMessage): Picture {
     nodes,
     alarms: delta.alarms,
     standsStill: standsStill(delta),
+    behind: isBehind(delta),
   };
 }

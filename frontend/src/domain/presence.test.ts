@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 import { badgeOf, type Looking, newestButton, presenceOf } from "./presence";
 
-const OPEN: Looking = { replay: false, closed: false, heard: true };
+const OPEN: Looking = { replay: false, closed: false, recorded: false, heard: true };
 
 test("an open incident that is heard is live", () => {
   expect(presenceOf(OPEN)).toBe("live");
@@ -11,10 +11,12 @@ test.each<[string, Partial<Looking>, string, string]>([
   ["while nothing is heard", { heard: false }, "NOT LIVE", "Not live"],
   ["once the incident is closed", { closed: true }, "CLOSED", "Closed"],
   ["of a closed incident without a connection", { closed: true, heard: false }, "CLOSED", "Closed"],
+  ["of an import, whose time does not go on by itself", { recorded: true }, "RECORDED", "Recorded"],
+  ["in a replay of an import", { recorded: true, replay: true }, "REPLAY", "Back to the end"],
   ["in a replay", { replay: true }, "REPLAY", "Back to live"],
   ["in a replay of a closed incident", { replay: true, closed: true }, "REPLAY", "Back to the end"],
 ])("nothing says that it is live %s", (_, looking, badge, button) => {
   const presence = presenceOf({ ...OPEN, ...looking });
   expect(badgeOf(presence)).toBe(badge);
-  expect(newestButton(presence, looking.closed ?? false)).toBe(button);
+  expect(newestButton(presence, { ...OPEN, ...looking })).toBe(button);
 });

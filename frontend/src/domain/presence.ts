@@ -1,23 +1,27 @@
-/** Whether what is shown is now, and how the screen says so: only what is heard of an open incident is live. */
+/** Whether what is shown is now, and how the screen says so: live is what is heard of an open incident of today. */
 
-export type Presence = "live" | "replay" | "closed" | "unheard";
+export type Presence = "live" | "recorded" | "replay" | "closed" | "unheard";
 
 export interface Looking {
   readonly replay: boolean;
   readonly closed: boolean;
+  /** Its time goes on with its readings only: an import, an exercise. No age tells that nothing comes any more. */
+  readonly recorded: boolean;
   /** There is a picture of now, and the connection by which it came is not lost. */
   readonly heard: boolean;
 }
 
-export function presenceOf({ replay, closed, heard }: Looking): Presence {
+export function presenceOf({ replay, closed, recorded, heard }: Looking): Presence {
   if (replay) return "replay";
   // A closed incident stays as it was, whether its server is heard or not.
   if (closed) return "closed";
-  return heard ? "live" : "unheard";
+  if (!heard) return "unheard";
+  return recorded ? "recorded" : "live";
 }
 
 const BADGES: Record<Presence, string> = {
   live: "LIVE",
+  recorded: "RECORDED",
   replay: "REPLAY",
   closed: "CLOSED",
   unheard: "NOT LIVE",
@@ -29,7 +33,10 @@ export function badgeOf(presence: Presence): string {
 }
 
 /** What the button says that leads to the newest picture, or tells that it is shown already. */
-export function newestButton(presence: Presence, closed: boolean): string {
-  if (presence === "replay") return closed ? "Back to the end" : "Back to live";
-  return { live: "Live", closed: "Closed", unheard: "Not live" }[presence];
+export function newestButton(
+  presence: Presence,
+  { closed, recorded }: Pick<Looking, "closed" | "recorded">,
+): string {
+  if (presence === "replay") return closed || recorded ? "Back to the end" : "Back to live";
+  return { live: "Live", recorded: "Recorded", closed: "Closed", unheard: "Not live" }[presence];
 }

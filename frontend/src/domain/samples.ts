@@ -31,6 +31,7 @@ export function aNode(over: Partial<FrameNode> = {}): FrameNode {
     temperature_c: null,
     motionless_s: null,
     moved: false,
+    retire_reason: null,
     ...over,
   };
 }
@@ -41,6 +42,9 @@ export function anAlarm(over: Partial<FrameAlarm> = {}): FrameAlarm {
 
 /** What the server says when the estimator of an incident could not go on. */
 export const A_BREAK = { code: "estimator_failed", t: NOON, text: "It broke.", node: null } as const;
+
+/** What it says when something reported has not been in the picture for seconds. */
+export const A_DELAY = { code: "estimator_behind", t: NOON, text: "It is behind.", node: null } as const;
 
 export function aFrame(nodes: FrameNode[], over: Partial<FrameMessage> = {}): FrameMessage {
   const times = { t: NOON, clock_t: NOON, newest_t: NOON };

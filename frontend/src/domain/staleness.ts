@@ -70,7 +70,7 @@ export function statusAt(node: FrameNode, now: number, limits: StalenessLimits):
 /** Covariance at `now` (m²): the server's, grown by what a moving node may have walked since. */
 export function covarianceAt({ state, presentedT }: Sighting, now: number): Covariance | null {
   const covariance = state.covariance_m2 ?? null;
-  if (covariance === null || !isMoving(state.role)) return covariance;
+  if (covariance === null || !isMoving(state.role) || state.status === "retired") return covariance;
   const grownS2 = growthS2(ageS(state, now)) - growthS2(ageS(state, presentedT));
   if (grownS2 <= 0) return covariance;
   const [ee, en, eu, nn, nu, uu] = covariance;

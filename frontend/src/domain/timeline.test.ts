@@ -1,6 +1,7 @@
 import { describe, expect, test } from "vitest";
 import { anAlarm, anIncident, NOON } from "./samples";
 import {
+  eventsAt,
   extentOf,
   type Mark,
   neighbourMark,
@@ -91,4 +92,10 @@ test("the next and the previous mark are the nearest ones on either side", () =>
   expect(neighbourMark(marks, 20, 1)?.t).toBe(30);
   expect(neighbourMark(marks, 20, -1)?.t).toBe(10);
   expect(neighbourMark(marks, 30, 1)).toBeNull();
+});
+
+test("what happened within a second of the moment that is shown is said, and nothing else", () => {
+  const marks: Mark[] = [0, 0.9, 2].map((s) => ({ t: NOON + s, kind: "drop", text: `b${s} dropped` }));
+  expect(eventsAt(marks, NOON).map(({ text }) => text)).toEqual(["b0 dropped", "b0.9 dropped"]);
+  expect(eventsAt(marks, NOON + 5)).toEqual([]);
 });

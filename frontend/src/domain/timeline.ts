@@ -71,6 +71,11 @@ export function withAlarmMarks(
   return fresh.length === 0 ? marks : [...marks, ...fresh].sort((a, b) => a.t - b.t);
 }
 
+/** What happened at the moment that is shown: the texts of the marks within a second of it. */
+export function eventsAt(marks: readonly Mark[], t: number): readonly Mark[] {
+  return marks.filter((mark) => Math.abs(mark.t - t) <= 1);
+}
+
 /** The nearest mark after (+1) or before (-1) `t`; null where there is none. */
 export function neighbourMark(marks: readonly Mark[], t: number, step: 1 | -1): Mark | null {
   const beyond = marks.filter((mark) => (mark.t - t) * step > 0.5);

@@ -57,6 +57,8 @@ export class Trail {
 
 /** The trails of one incident. */
 export class Trails {
+  /** Counts how often other trails took their place; points that are added at their ends change nothing of it. */
+  version = 0;
   private readonly byNode = new Map<string, Trail>();
 
   add(node: string, t: number, position: Position): void {
@@ -70,6 +72,7 @@ export class Trails {
 
   /** Puts the recorded tracks before what has been seen since. */
   fill(tracks: readonly Track[]): void {
+    this.version += 1;
     for (const { node, points } of tracks) {
       const seen = this.byNode.get(node);
       const trail = new Trail();
@@ -86,6 +89,7 @@ export class Trails {
   }
 
   clear(): void {
+    this.version += 1;
     this.byNode.clear();
   }
 }

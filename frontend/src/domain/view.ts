@@ -26,6 +26,26 @@ export interface Margins {
   readonly bottom: number;
 }
 
+/** For the storey buttons, the controls and the labels. */
+const FULL_MARGINS: Margins = { left: 200, right: 210, top: 60, bottom: 70 };
+/** On a map less wide than this the margins are narrower too. */
+const WIDE_ENOUGH_PX = 700;
+/** On a phone the buttons lie over the head and the foot of the map, and nothing at its sides. */
+const NARROW_PX = 520;
+const NARROW_MARGINS: Margins = { left: 45, right: 75, top: 85, bottom: 100 };
+
+/** A phone's map. */
+export function isNarrow({ width }: Pick<View, "width">): boolean {
+  return width <= NARROW_PX;
+}
+
+/** The margins that a map of this size keeps free. */
+export function marginsOf({ width }: Pick<View, "width">): Margins {
+  if (isNarrow({ width })) return NARROW_MARGINS;
+  const share = Math.min(1, width / WIDE_ENOUGH_PX);
+  return { ...FULL_MARGINS, left: FULL_MARGINS.left * share, right: FULL_MARGINS.right * share };
+}
+
 export const MIN_PIXELS_PER_METRE = 0.02;
 export const MAX_PIXELS_PER_METRE = 400;
 /** Fitting never shows less than this (m): one responder alone is no reason to fill the map with a dot. */

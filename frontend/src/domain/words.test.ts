@@ -29,7 +29,7 @@ test("levels are called by their spoken names, and unknown ones say so", () => {
   expect(words.levelWords(0, STOREYS)).toBe("Level G");
   expect(words.levelWords(7, STOREYS)).toBe("Level 7");
   expect(words.levelWords(0, [{ level: 0, name: "Mezzanine", up_m: 0 }])).toBe("Mezzanine");
-  expect(words.levelWords(null, STOREYS)).toBe("level unknown");
+  expect(words.levelWords(null, STOREYS)).toBe("storey not known");
 });
 
 test("a probability never claims to be certain by rounding", () => {
@@ -47,9 +47,15 @@ test.each([
 });
 
 test("air and battery that were not reported are not made up", () => {
-  expect([words.airWords(null), words.batteryWords(null)]).toEqual(["not reported", "not reported"]);
-  expect([words.airWords(0), words.batteryWords(0)]).toEqual(["0 bar", "0 %"]);
-  expect([words.airWords(182.4), words.batteryWords(0.8)]).toEqual(["182 bar", "80 %"]);
+  expect([words.airWords(null, "live"), words.batteryWords(null)]).toEqual(["not reported", "not reported"]);
+  expect([words.airWords(0, "live"), words.batteryWords(0)]).toEqual(["0 bar", "0 %"]);
+  expect([words.airWords(182.4, "live"), words.batteryWords(0.8)]).toEqual(["182 bar", "80 %"]);
+});
+
+test("what somebody reported who is not heard any more is said to be of then", () => {
+  expect(words.airWords(290, "live")).toBe("290 bar");
+  expect([words.airWords(290, "stale"), words.airWords(290, "lost")]).toEqual(["was 290 bar", "was 290 bar"]);
+  expect(words.airWords(null, "lost")).toBe("not reported");
 });
 
 test("lengths carry their unit and no more digits than matter", () => {

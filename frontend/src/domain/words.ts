@@ -5,7 +5,8 @@ const STATUS_WORDS: Record<Status, string> = {
   live: "Live",
   stale: "Stale",
   lost: "Lost",
-  retired: "Left",
+  // Who has left, and also whose unit is lost or burned: that he is out of the building must not be read from it.
+  retired: "Not tracked",
 };
 
 const ALARM_WORDS: Record<FrameAlarm["alarm"], string> = {
@@ -48,9 +49,28 @@ export function nameOf(node: Pick<FrameNode, "node" | "callsign">): string {
   return node.callsign || node.node;
 }
 
+/** Hebrew, Arabic and their neighbours, which are written from the right. */
+const FROM_THE_RIGHT = /[\u0590-\u08ff\ufb1d-\ufdff\ufe70-\ufefc]/;
+/** So many letters of a name have room beside a mark. */
+const BESIDE_MARK = 22;
+
+/**
+ * A name in one text with other words: one from the right draws no numbers after it to its other side (Unicode
+ * Annex 9, isolates). A long one gives way in its middle: its beginning and its end tell it from others.
+ */
+export function nameInText(name: string): string {
+  const letters = [...name];
+  const kept = (BESIDE_MARK - 2) / 2;
+  const fits =
+    letters.length <= BESIDE_MARK
+      ? name
+      : `${letters.slice(0, kept).join("")}…${letters.slice(-kept).join("")}`;
+  return FROM_THE_RIGHT.test(fits) ? `\u2068${fits}\u2069` : fits;
+}
+
 /** The spoken name of a level: the incident's own, else the bare number. */
 export function levelName(level: number | null | undefined, levels: readonly Level[]): string {
-  if (level == null) return "level unknown";
+  if (level == null) return "storey not known";
   return levels.find((known) => known.level === level)?.name ?? String(level);
 }
 
@@ -91,8 +111,13 @@ export function batteryWords(battery: number | null | undefined): string {
   return `${Math.round(battery * 100)} %`;
 }
 
-export function airWords(air_bar: number | null | undefined): string {
-  return air_bar == null ? "not reported" : `${Math.round(air_bar)} bar`;
+/** What somebody reported, and that it was so then where nothing has been heard since. */
+export function asOf(status: Status, said: string): string {
+  return status === "live" ? said : `was ${said}`;
+}
+
+export function airWords(air_bar: number | null | undefined, status: Status): string {
+  return air_bar == null ? "not reported" : asOf(status, `${Math.round(air_bar)} bar`);
 }
 
 function two(value: number): string {

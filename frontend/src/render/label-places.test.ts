@@ -95,3 +95,17 @@ test("no label lies under the buttons; who is in alarm is labelled also where no
   const both = [wants("mayday", 400, 300, true), wants("ff1", 600, 300)];
   expect([...placed(both, NOWHERE_BEFORE, [everywhere]).keys()]).toEqual(["mayday"]);
 });
+
+test("in a crowd that nobody could follow lines to, whoever must be labelled is, off all others and all marks", () => {
+  const must = [wants("chosen", 404, 304, true), wants("mayday", 412, 310, true)];
+  const all = [...must, ...crowd(50)];
+  const spots = placed(all);
+  const boxes = must.map(({ node }) => spots.get(node)?.box ?? { x: 0, y: 0, ...MAP });
+  const others = [...spots].flatMap(([node, { box }]) =>
+    must.some((one) => one.node === node) ? [] : [box],
+  );
+  const [chosen, mayday] = boxes;
+  expect(chosen && mayday && overlap(chosen, mayday)).toBe(false);
+  for (const box of boxes)
+    expect([...others, ...all.map(markOf)].some((one) => overlap(box, one))).toBe(false);
+});

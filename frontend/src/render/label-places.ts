@@ -32,7 +32,7 @@ export interface Spot {
   readonly line: readonly Box[];
 }
 
-/** More labels than these have no lines: nobody could follow them. */
+/** More labels than these have no lines, as nobody could follow them, save those that are always shown. */
 export const MOST_LED = 30;
 /** Rings of places for labels with a line: how far beyond the mark (CSS pixels), and how many places each has. */
 const RINGS_PX = [26, 52, 78];
@@ -61,7 +61,7 @@ export function labelPlaces(
 ): Map<string, Spot> {
   const found = new Map<string, Spot>();
   const [everything, over] = [new Occupied([...marks, ...covered]), new Occupied(covered)];
-  const written = new Occupied([]);
+  const written = new Occupied(covered);
   const free = (places: readonly Spot[], occupied: Occupied) =>
     places.find(({ box }) => inside(box, map) && occupied.leaves(box));
   const clear = ({ line }: Spot) => line.every((part) => written.leaves(part));
@@ -74,11 +74,11 @@ export function labelPlaces(
       );
     const whole = beside("whole", label);
     let spot = pick(whole) ?? pick(beside("short", label));
-    if (spot === undefined && wanted.length <= MOST_LED) {
+    if (spot === undefined && (label.always || wanted.length <= MOST_LED)) {
       const led = farOff(label);
       spot = pick(led.filter(clear)) ?? pick(led);
     }
-    if (label.always) spot ??= free(whole, over) ?? whole[0];
+    if (label.always) spot ??= free(whole, written) ?? free(whole, over) ?? whole[0];
     if (spot === undefined) continue;
     for (const box of [spot.box, ...spot.line]) {
       everything.add(box);

@@ -1,8 +1,10 @@
 /** Who it is and how old the fix is, of each responder. */
 import { labelWords } from "../domain/label";
+import { isNarrow } from "../domain/view";
 import { labelPlaces, nearest, type Spot, type Wanted } from "./label-places";
 import type { Box, Layer, Placed, Scene } from "./layer";
 import { markReach, movers, RADIUS } from "./place";
+import { scaleBox } from "./scale";
 
 const LINE_PX = 16;
 const PADDING = 5;
@@ -36,12 +38,12 @@ export const labels: Layer = {
     );
     const labelled = everybody
       .reverse()
-      .filter((place) => (!place.elsewhere || urgent(scene, place)) && place.node.status !== "retired")
+      .filter((place) => urgent(scene, place) || (!place.elsewhere && place.node.status !== "retired"))
       .map((place) => labelOf(context, scene, place));
     const spots = labelPlaces(
       labelled.map(({ wanted }) => wanted),
       marks,
-      scene.covered,
+      [...scene.covered, scaleBox(scene.view)],
       scene.view,
       before,
     );
@@ -66,7 +68,7 @@ interface Label {
 }
 
 function labelOf(context: CanvasRenderingContext2D, scene: Scene, place: Placed): Label {
-  const { whole, short } = labelWords(place.node, scene);
+  const { whole, short } = labelWords(place.node, { ...scene, narrow: isNarrow(scene.view) });
   const size = (lines: readonly string[]) => ({
     width: Math.max(...lines.map((line) => widthOf(context, line))) + 2 * PADDING,
     height: lines.length * LINE_PX + PADDING,

@@ -1,10 +1,11 @@
 /** What a map layer is: it draws one kind of thing of a scene. A new layer is one new file. */
 import type { CrewMark } from "../domain/crews";
+import type { KnownNow } from "../domain/known-now";
 import type { LevelChoice } from "../domain/levels";
 import type { Picture } from "../domain/picture";
 import type { StalenessLimits } from "../domain/staleness";
 import type { Trails } from "../domain/trails";
-import type { FrameAlarm, FrameNode, Level } from "../domain/types";
+import type { FrameAlarm, FrameNode, Level, Track } from "../domain/types";
 import type { View } from "../domain/view";
 import type { Palette } from "../ui/themes";
 
@@ -24,6 +25,9 @@ export interface Scene {
   readonly trails: Trails;
   /** Length of the trails shown (s); 0 hides them. */
   readonly trail_s: number;
+  /** Where they were as known now, and how they came there: beside a picture of the past, where it is wanted. */
+  readonly knownNow: ReadonlyMap<string, KnownNow>;
+  readonly knownTracks: readonly Track[];
   /** What lies over the map: no label goes there. */
   readonly covered: readonly Box[];
 }
@@ -37,7 +41,8 @@ export interface Box {
 }
 
 export interface Layer {
-  draw(context: CanvasRenderingContext2D, scene: Scene): void;
+  /** @param moving the map is under a finger: what is dear to draw may be as it was, moved along. */
+  draw(context: CanvasRenderingContext2D, scene: Scene, moving: boolean): void;
 }
 
 /** A node where it is drawn (CSS pixels). */

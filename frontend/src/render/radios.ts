@@ -8,6 +8,31 @@ const NAMED_FROM = 14;
 const NEAR_ENOUGH_TO_NAME = 40;
 /** Width of a character of a name, about (px). */
 const CHARACTER_PX = 7;
+/** Names nearer to each other are read as one (px). */
+const APART_PX = 8;
+const LINE_PX = 14;
+
+interface Name {
+  readonly text: string;
+  /** Its middle (CSS pixels). */
+  readonly x: number;
+  readonly y: number;
+}
+
+/** The names that have room: those that would lie over one before them are left out. The marks tell more than a smear. */
+export function readable(names: readonly Name[]): Name[] {
+  const kept: Name[] = [];
+  const half = ({ text }: Name) => (text.length * CHARACTER_PX) / 2;
+  for (const name of names) {
+    const over = kept.some(
+      (other) =>
+        Math.abs(other.y - name.y) < LINE_PX &&
+        Math.abs(other.x - name.x) < half(other) + half(name) + APART_PX,
+    );
+    if (!over) kept.push(name);
+  }
+  return kept;
+}
 
 export const radios: Layer = {
   draw(context, scene) {
@@ -23,17 +48,10 @@ export const radios: Layer = {
       context.textBaseline = "top";
       context.globalAlpha = 1;
       context.fillStyle = scene.palette.inkSoft;
-      const taken: { x: number; y: number; half: number }[] = [];
-      for (const { node, x, y, elsewhere } of all) {
-        if (elsewhere) continue;
-        const text = words(scene, node);
-        const half = (text.length * CHARACTER_PX) / 2;
-        // Names that would lie over each other are left out: the marks tell more than a smear.
-        if (taken.some((other) => Math.abs(other.y - y) < 14 && Math.abs(other.x - x) < other.half + half))
-          continue;
-        taken.push({ x, y, half });
-        context.fillText(text, x, y + 9);
-      }
+      const names = all.flatMap(({ node, x, y, elsewhere }) =>
+        elsewhere ? [] : [{ text: words(scene, node), x, y: y + 9 }],
+      );
+      for (const { text, x, y } of readable(names)) context.fillText(text, x, y);
     }
     context.restore();
   },

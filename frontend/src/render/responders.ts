@@ -21,7 +21,7 @@ function draw(context: CanvasRenderingContext2D, scene: Scene, { node, x, y, els
   const status = statusAt(node, scene.now, scene.limits);
   const mark = markOf(node, scene.crews);
   const alarm = scene.alarms.has(node.node);
-  context.globalAlpha = elsewhere ? 0.3 : status === "retired" ? 0.4 : 1;
+  context.globalAlpha = elsewhere ? 0.3 : status === "retired" && !alarm ? 0.4 : 1;
   if (node.node === scene.selected) {
     context.strokeStyle = scene.palette.ink;
     context.lineWidth = 3;

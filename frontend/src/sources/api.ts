@@ -69,14 +69,19 @@ export async function incident(id: string): Promise<Incident> {
   return answered(client.GET("/api/v1/incidents/{incident}", { params: { path: { incident: id } } }));
 }
 
-/** The estimate as it stood, a point every `step` seconds between `from` and `to` (Unix s). */
+/**
+ * Where everybody was, a point every `step` seconds between `from` and `to` (Unix s), with so many decimals of its
+ * numbers: `live` as the estimate stood then, `smoothed` with everything known now.
+ */
 export async function tracks(
   id: string,
-  query: { from?: number; to?: number; step?: number },
+  query: { view: "live" | "smoothed"; from?: number; to?: number; step?: number; decimals: number },
+  signal?: AbortSignal,
 ): Promise<Track[]> {
-  const params = { path: { incident: id }, query: { ...query, view: "live" as const } };
+  const params = { path: { incident: id }, query };
   // openapi-fetch widens the tuples of the schema to arrays.
-  return (await answered(client.GET("/api/v1/incidents/{incident}/tracks", { params }))).tracks as Track[];
+  const request = client.GET("/api/v1/incidents/{incident}/tracks", { params, ...(signal && { signal }) });
+  return (await answered(request)).tracks as Track[];
 }
 
 /** What holds a node's fix at `t` (Unix s; null: the newest), with everything known now. */

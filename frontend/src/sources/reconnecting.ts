@@ -1,6 +1,7 @@
 /** A socket that comes back: after a close, and after silence. */
 import type { LiveMessage } from "../domain/types";
 import { backoffMs } from "./backoff";
+import { Sleep } from "./sleep";
 import { type LinkState, type Listener, NOT_CONNECTED, type Source } from "./source";
 
 /** The server sends at least a heartbeat every 2 s; silence longer than this is a lost connection. */
@@ -15,6 +16,7 @@ export class ReconnectingSource implements Source {
   private readonly watch = setInterval(() => this.noticeSilence(), WATCH_EVERY_MS);
   private state: LinkState = NOT_CONNECTED;
   private connectingSinceMs = 0;
+  private readonly sleep = new Sleep(Date.now(), performance.now());
   private readonly online = () => this.reconnectNow();
 
   /** @param address asked for anew before each attempt */
@@ -52,6 +54,11 @@ export class ReconnectingSource implements Source {
   /** Called when the link has opened, before any message. */
   protected opened(): void {}
 
+  /** Whether a message of `t` (Unix s) is of what was asked for at all; called with each. */
+  protected concerns(_t: number): boolean {
+    return true;
+  }
+
   /** Incident time by a message of `t` (Unix s), or null: it tells none; called with each. */
   protected time(t: number): number | null {
     return t;
@@ -70,7 +77,9 @@ export class ReconnectingSource implements Source {
   private receive(message: LiveMessage): void {
     this.become({ link: "open", lastWordMs: performance.now(), attempts: 0 });
     if (message.type === "error") return;
-    const t = this.time(message.type === "heartbeat" ? message.t : message.clock_t);
+    const of = message.type === "heartbeat" ? message.t : message.clock_t;
+    if (!this.concerns(of)) return;
+    const t = this.time(of);
     for (const listener of this.listeners) {
       if (message.type === "frame") listener.frame(message, t);
       else if (message.type === "delta") listener.delta(message, t);
@@ -79,12 +88,26 @@ export class ReconnectingSource implements Source {
   }
 
   private noticeSilence(): void {
+    const sleptMs = this.sleep.since(Date.now(), performance.now());
+    if (sleptMs > 0) this.awoke(sleptMs);
     if (this.socket === null) return;
     const since = Math.max(this.state.lastWordMs ?? 0, this.connectingSinceMs);
     if (performance.now() - since > SILENCE_MS) {
       this.drop();
       this.lost();
     }
+  }
+
+  /** What came before the device slept is as old as that, whatever the monotonic clock says of it. */
+  private awoke(sleptMs: number): void {
+    const { lastWordMs } = this.state;
+    this.drop();
+    this.become({
+      ...this.state,
+      link: "lost",
+      lastWordMs: lastWordMs === null ? null : lastWordMs - sleptMs,
+    });
+    this.connect();
   }
 
   private lost(): void {

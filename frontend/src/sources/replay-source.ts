@@ -16,6 +16,8 @@ export class ReplaySource extends ReconnectingSource {
   private readonly at: { t: number; speed: number; paused: boolean };
   /** What no message has answered yet. */
   private sought: Sought | null = null;
+  /** A server begins with the beginning, before it has heard what is sought: nobody has asked for that. */
+  private opening = false;
 
   constructor(incident: string, { begin, at, to, speed, paused }: ReplayFrom) {
     super(() => {
@@ -43,15 +45,25 @@ export class ReplaySource extends ReconnectingSource {
 
   /** Also after a break the replay goes on where it was. */
   protected override opened(): void {
+    this.opening = true;
     this.send({ speed: this.at.speed });
     this.send({ pause: this.at.paused });
     this.seek(this.at.t);
   }
 
+  protected override concerns(t: number): boolean {
+    this.opening &&= !this.isAnswer(t);
+    return !this.opening;
+  }
+
   protected override time(t: number): number | null {
-    if (this.sought !== null && !answers(this.sought, t, performance.now(), this.at.speed)) return null;
+    if (!this.isAnswer(t)) return null;
     this.sought = null;
     this.at.t = t;
     return t;
+  }
+
+  private isAnswer(t: number): boolean {
+    return this.sought === null || answers(this.sought, t, performance.now(), this.at.speed);
   }
 }

@@ -446,7 +446,7 @@ export interface components {
          * @description What this process needs for its work.
          *
          *     Attributes:
-         *         log: the database answers.
+         *         log: the database answers, and its disk has room, where it is a file here.
          *         worker: an estimator worker is connected and ready to compute; it takes seconds to begin. Without one
          *             telemetry is still taken, and dots go stale.
          */
@@ -925,6 +925,7 @@ export interface components {
          *             temperature_c: temperature at the unit (°C).
          *             motionless_s: for how long it had not moved at its newest status (s).
          *             moved: it was noticed to have been moved in the last ten minutes.
+         *             retire_reason: why it has left, where that was said.
          */
         FrameNode: {
             node: string;
@@ -958,6 +959,7 @@ export interface components {
             temperature_c: number | null;
             motionless_s: number | null;
             moved: boolean;
+            retire_reason: string | null;
         };
         /**
          * FrameAlarm
@@ -1565,8 +1567,10 @@ export interface operations {
             query?: {
                 /** @description only entries with a larger `seq` */
                 after?: number;
-                /** @description at most so many lines */
+                /** @description at most so many entries */
                 limit?: number | null;
+                /** @description of these entries only those that hold a reading of such a kind, whole */
+                kind?: string[] | null;
             };
             header?: never;
             path: {
@@ -1836,6 +1840,8 @@ export interface operations {
                 /** @description seconds from point to point */
                 step?: number;
                 view?: "live" | "smoothed";
+                /** @description of metres and m²; all that there are, without it */
+                decimals?: number | null;
             };
             header?: never;
             path: {

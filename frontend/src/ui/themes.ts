@@ -16,6 +16,9 @@ export interface Palette {
   readonly gridStrong: string;
   readonly accent: string;
   readonly accentInk: string;
+  /** Ground of what is chosen, which is there all the time: by night it shines no more than it must. */
+  readonly chosen: string;
+  readonly chosenInk: string;
   /** Red: alarm, and nothing else. */
   readonly alarm: string;
   readonly alarmInk: string;
@@ -36,6 +39,8 @@ export const PALETTES: Record<Theme, Palette> = {
     gridStrong: "#c2ccd5",
     accent: "#0b5f96",
     accentInk: "#ffffff",
+    chosen: "#0b5f96",
+    chosenInk: "#ffffff",
     alarm: "#b80f26",
     alarmInk: "#ffffff",
     warn: "#7a4b00",
@@ -52,6 +57,8 @@ export const PALETTES: Record<Theme, Palette> = {
     gridStrong: "#3a4753",
     accent: "#7cc4ee",
     accentInk: "#10202c",
+    chosen: "#7cc4ee",
+    chosenInk: "#10202c",
     alarm: "#c81f36",
     alarmInk: "#ffffff",
     warn: "#f0c060",
@@ -68,6 +75,8 @@ export const PALETTES: Record<Theme, Palette> = {
     gridStrong: "#222c36",
     accent: "#5fb0de",
     accentInk: "#081018",
+    chosen: "#1d4e6c",
+    chosenInk: "#e3ebf1",
     alarm: "#c01c33",
     alarmInk: "#ffffff",
     warn: "#d9a441",

@@ -1,0 +1,74 @@
+/** The tracks as known now, beside a replay: asked for when they are wanted, a stretch of time at once. */
+import type { Track } from "../domain/types";
+import { RequestFailed } from "../sources/api";
+
+/** So much before and after the moment that is shown is asked for (s). */
+const REACH_S = 900;
+/** The server goes on with a sum that takes long: then it is asked for again (ms). */
+const AGAIN_MS = 3000;
+const TOO_SLOW = 504;
+
+/** @returns the smoothed tracks between two moments (Unix s) */
+export type AskTracks = (from: number, to: number, signal: AbortSignal) => Promise<Track[]>;
+
+export class KnownNow {
+  /** It is wanted. */
+  on = $state(false);
+  tracks = $state.raw<readonly Track[]>([]);
+  /** The server works it out. */
+  busy = $state(false);
+  trouble = $state<string | null>(null);
+  private loaded = { from: 0, to: 0 };
+  private asking = new AbortController();
+
+  constructor(
+    private readonly ask: AskTracks,
+    private readonly againMs = AGAIN_MS,
+  ) {}
+
+  toggle(): void {
+    if (this.on) this.leave();
+    else this.on = true;
+  }
+
+  /** What was asked for is not wanted any more, or is of another incident. */
+  leave(): void {
+    this.asking.abort();
+    this.on = this.busy = false;
+    this.trouble = null;
+    this.tracks = [];
+    this.loaded = { from: 0, to: 0 };
+  }
+
+  /** A moment is shown (Unix s): asks for what is around it where it is wanted and not there. */
+  async shows(t: number): Promise<void> {
+    const { from, to } = this.loaded;
+    if (!this.on || this.busy || this.trouble !== null || (t >= from && t < to)) return;
+    this.busy = true;
+    const asking = new AbortController();
+    this.asking = asking;
+    const stretch = { from: Math.max(0, Math.floor(t) - REACH_S), to: Math.floor(t) + REACH_S };
+    try {
+      const tracks = await this.patiently(stretch, asking.signal);
+      if (asking.signal.aborted) return;
+      this.tracks = tracks;
+      this.loaded = stretch;
+    } catch (cause) {
+      if (!asking.signal.aborted) this.trouble = cause instanceof Error ? cause.message : String(cause);
+    } finally {
+      if (this.asking === asking) this.busy = false;
+    }
+  }
+
+  private async patiently({ from, to }: { from: number; to: number }, signal: AbortSignal): Promise<Track[]> {
+    for (;;) {
+      try {
+        return await this.ask(from, to, signal);
+      } catch (cause) {
+        if (signal.aborted || !(cause instanceof RequestFailed && cause.status === TOO_SLOW)) throw cause;
+      }
+      await new Promise((resolve) => setTimeout(resolve, this.againMs));
+      signal.throwIfAborted();
+    }
+  }
+}

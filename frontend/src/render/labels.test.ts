@@ -1,0 +1,31 @@
+import { expect, test } from "vitest";
+import { aNode, pictureWith } from "../domain/samples";
+import { FIRST_VIEW, resize, toLocal } from "../domain/view";
+import { labels } from "./labels";
+import type { Scene } from "./layer";
+import { aScene } from "./samples";
+import { scaleBox } from "./scale";
+
+const VIEW = resize(FIRST_VIEW, 800, 600);
+
+/** Where the first letters of all labels come to lie (CSS pixels). */
+function written(scene: Scene): [x: number, y: number][] {
+  const places: [number, number][] = [];
+  const pen = {
+    measureText: (text: string) => ({ width: 8 * text.length }),
+    fillText: (_: string, x: number, y: number) => places.push([x, y]),
+  };
+  const context = new Proxy(pen, { get: (known, name) => Reflect.get(known, name) ?? (() => undefined) });
+  labels.draw(context as unknown as CanvasRenderingContext2D, scene, false);
+  return places;
+}
+
+test("no label lies over the arrow to the north or the length of a metre", () => {
+  const box = scaleBox(VIEW);
+  const beside = toLocal(VIEW, box.width - 60, box.y - 20);
+  const node = aNode({ position_m: [...beside, 0] });
+  const people = [node, { ...node, node: "ff2" }, { ...node, node: "ff3" }];
+  const places = written(aScene({ view: VIEW, picture: pictureWith(...people) }));
+  expect(places.length).toBeGreaterThan(3);
+  expect(places.filter(([x, y]) => x < box.width && y > box.y)).toEqual([]);
+});

@@ -1,0 +1,28 @@
+/** A scene for the tests of this folder: a night with nobody there, with what a test is about put over it. */
+import { NOON } from "../domain/samples";
+import { DEFAULT_LIMITS } from "../domain/staleness";
+import { Trails } from "../domain/trails";
+import { FIRST_VIEW, resize } from "../domain/view";
+import { PALETTES } from "../ui/themes";
+import type { Scene } from "./layer";
+
+export function aScene(over: Partial<Scene> = {}): Scene {
+  return {
+    view: resize(FIRST_VIEW, 800, 600),
+    palette: PALETTES.night,
+    picture: null,
+    now: NOON,
+    levels: [],
+    level: "all",
+    limits: DEFAULT_LIMITS,
+    crews: new Map(),
+    alarms: new Map(),
+    selected: null,
+    trails: new Trails(),
+    trail_s: 0,
+    knownNow: new Map(),
+    knownTracks: [],
+    covered: [],
+    ...over,
+  };
+}

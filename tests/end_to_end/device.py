@@ -1,0 +1,93 @@
+"""The device that the commander holds: it sleeps, gives everything its own colours, has a slow link."""
+
+import re
+from collections.abc import Callable
+
+from playwright.sync_api import Page, WebSocketRoute
+
+
+class DeviceUsed:
+    """What becomes of it.
+
+    Args:
+        page: a page of the browser.
+    """
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+
+    def sleeps(self, seconds: float) -> None:
+        """Wake up after that: only the wall clock has gone on; the server is slow to answer."""
+        self.page.evaluate(
+            """(slept) => {
+              const [now, Socket] = [Date.now, window.WebSocket];
+              Date.now = () => now() + 1000 * slept;
+              window.WebSocket = class {
+                constructor(address) {
+                  setTimeout(() => { Object.assign(new Socket(address), this); }, 1500);
+                }
+                close() {}
+              };
+            }""",
+            seconds,
+        )
+
+    def waits_for_pictures(self) -> Callable[[], None]:
+        """From the next page on no live picture comes through; what lets them through."""
+        held: list[Callable[[], None]] = []
+        free = False
+
+        def told(here: WebSocketRoute) -> None:
+            server = here.connect_to_server()
+
+            def hand_on(message: str | bytes) -> None:
+                if free:
+                    here.send(message)
+                else:
+                    held.append(lambda: here.send(message))
+
+            server.on_message(hand_on)
+
+        def let_through() -> None:
+            nonlocal free
+            free = True
+            for send in held:
+                send()
+
+        self.page.route_web_socket(re.compile("/live"), told)
+        return let_through
+
+    def swipes_back(self) -> None:
+        """Swipe in from the edge as who wears gloves does unawares: the browser goes back."""
+        self.page.evaluate("history.back()")
+
+    def has_asked_for(self, path: str) -> bool:
+        """Whether the page has asked the server for what lies under a path by now."""
+        asked: list[str] = self.page.evaluate(
+            "performance.getEntriesByType('resource').map(({name}) => name)"
+        )
+        return any(path in url for url in asked)
+
+    def sees_the_systems_colours(self) -> None:
+        """Have the system choose all colours (forced colours, high contrast)."""
+        self.page.emulate_media(forced_colors="active")
+
+    def storey_colours(self) -> dict[str, str]:
+        """The ground of each storey button, by its name."""
+        colours: dict[str, str] = self.page.get_by_test_id("storeys").evaluate(
+            """(bar) => Object.fromEntries([...bar.querySelectorAll('button')].map((button) =>
+              [button.querySelector('.name').textContent, getComputedStyle(button).backgroundColor]))"""
+        )
+        return colours
+
+    @property
+    def alarm_colour(self) -> str:
+        """The ground of the first alarm."""
+        banner = self.page.get_by_test_id("alarm").first
+        return str(banner.evaluate("(banner) => getComputedStyle(banner).backgroundColor"))
+
+    @property
+    def words_of_the_loss(self) -> str:
+        """What is said of a lost connection; nothing without one."""
+        sign = self.page.get_by_test_id("connection-lost")
+        return " ".join(sign.inner_text().split()) if sign.count() else ""

@@ -1,0 +1,45 @@
+"""The past: what happened when, and what is known of it now, beside what was shown then."""
+
+from playwright.sync_api import Page
+
+
+class PastCompared:
+    """What is seen of it.
+
+    Args:
+        page: a page of the browser.
+    """
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+
+    @property
+    def event(self) -> str:
+        """What the timeline says happened at the moment that is shown."""
+        return " ".join(self.page.get_by_test_id("event").inner_text().split())
+
+    @property
+    def can_compare(self) -> bool:
+        """Whether there is a button that puts beside what is shown what is known now."""
+        return self.page.get_by_test_id("compare").is_visible()
+
+    def compares(self) -> None:
+        """Press it."""
+        self.page.get_by_test_id("compare").click()
+
+    @property
+    def words_of_the_comparison(self) -> str:
+        """What is said of how to read it, or of what it waits for."""
+        said = self.page.get_by_test_id("compare-said")
+        return said.inner_text() if said.count() else ""
+
+    @property
+    def known_now(self) -> dict[str, str]:
+        """How what is known now differs from what was shown, by callsign."""
+        words: dict[str, str] = self.page.get_by_test_id("board").evaluate(
+            """(board) => Object.fromEntries([...board.querySelectorAll('.known')].map((part) => {
+              const name = part.closest('button').querySelector('.name');
+              return [name.textContent.trim(), part.textContent.trim()];
+            }))"""
+        )
+        return words
