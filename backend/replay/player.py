@@ -7,6 +7,7 @@ from backend.live.record import EMPTY
 from backend.log.base import LogReader, RecordedFrame
 from backend.log.incident import Incident
 from backend.replay.clock import ReplayClock
+from backend.replay.control import Control, apply
 
 
 class Player:
@@ -26,9 +27,16 @@ class Player:
         self._row: RecordedFrame | None = None
         self._record = EMPTY
 
-    def sought(self) -> None:
-        """The next message is a whole frame: the viewer has jumped."""
-        self._shown = None
+    def obey(self, control: Control, wall_s: float) -> None:
+        """Do what a viewer asks; after a jump the next message is a whole frame.
+
+        Args:
+            control: what it asks.
+            wall_s: the wall time now (s).
+        """
+        apply(control, self._clock, wall_s)
+        if control.seek is not None:
+            self._shown = None
 
     def message(self, wall_s: float) -> FrameMessage | DeltaMessage | None:
         """What the viewer does not have yet at a wall time; None if nothing has changed.

@@ -14,11 +14,13 @@ from backend.live.socket import NO_SUCH_INCIDENT, TRY_AGAIN_LATER
 from backend.log.base import LogReader
 from backend.log.incidents import IncidentStore
 from backend.replay.clock import ReplayClock
-from backend.replay.control import FASTEST, LATEST_T, SLOWEST, apply, understand
+from backend.replay.control import FASTEST, LATEST_T, SLOWEST, understand
 from backend.replay.player import Player
 
 STEP_S = 0.1
 BEAT_S = 1.0
+MOST_WAITING = 64
+"""Messages of a viewer that wait to be done; more are left in its socket."""
 
 Moment = Annotated[float | None, Query(ge=0.0, le=LATEST_T, allow_inf_nan=False)]
 
@@ -58,27 +60,43 @@ def replay_router(incidents: IncidentStore, reader: LogReader) -> APIRouter:
             speed,
             time.monotonic(),
         )
-        await _play(socket, clock, Player(reader, known, clock))
+        await play(socket, Player(reader, known, clock))
 
     return router
 
 
-async def _play(socket: WebSocket, clock: ReplayClock, player: Player) -> None:
-    """Show and listen until the viewer leaves."""
-    listening = asyncio.create_task(_listen(socket, clock, player))
+async def play(socket: WebSocket, player: Player) -> None:
+    """Show and listen until the viewer leaves.
+
+    What the viewer asks waits until the message under way is made: made of two moments, it would be a
+    whole frame of the one that was left, and the one that was sought would come as a change of it.
+
+    Args:
+        socket: accepted.
+        player: of the replay.
+    """
+    said: asyncio.Queue[str | bytes] = asyncio.Queue(MOST_WAITING)
+    listening = asyncio.create_task(_listen(socket, said))
     try:
         with contextlib.suppress(WebSocketDisconnect):
-            await _show(socket, player, listening)
+            await _show(socket, player, said, listening)
     finally:
         listening.cancel()
         with contextlib.suppress(asyncio.CancelledError, WebSocketDisconnect):
             await listening
 
 
-async def _show(socket: WebSocket, player: Player, listening: asyncio.Task[None]) -> None:
+async def _show(
+    socket: WebSocket, player: Player, said: asyncio.Queue[str | bytes], listening: asyncio.Task[None]
+) -> None:
     beat_at = 0.0
     while not listening.done():
         wall_s = time.monotonic()
+        while not said.empty():
+            try:
+                player.obey(understand(said.get_nowait()), wall_s)
+            except ValueError as error:
+                await socket.send_text(msgspec.json.encode(ErrorMessage(detail=str(error))).decode())
         try:
             message = await asyncio.to_thread(player.message, wall_s)
         except Unavailable as problem:
@@ -93,16 +111,9 @@ async def _show(socket: WebSocket, player: Player, listening: asyncio.Task[None]
         await asyncio.wait([listening], timeout=STEP_S)
 
 
-async def _listen(socket: WebSocket, clock: ReplayClock, player: Player) -> None:
+async def _listen(socket: WebSocket, said: asyncio.Queue[str | bytes]) -> None:
     while True:
         received = await socket.receive()
         if received["type"] == "websocket.disconnect":
             return
-        try:
-            control = understand(received.get("text") or received.get("bytes") or b"")
-        except ValueError as error:
-            await socket.send_text(msgspec.json.encode(ErrorMessage(detail=str(error))).decode())
-            continue
-        apply(control, clock, time.monotonic())
-        if control.seek is not None:
-            player.sought()
+        await said.put(received.get("text") or received.get("bytes") or b"")

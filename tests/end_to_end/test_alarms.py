@@ -4,10 +4,14 @@ import re
 import time
 
 import msgspec
+import pytest
 
 from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import Reading, alarm, base, heard, responder
 from tests.running import Post, Server, eventually
+
+# A call elsewhere, too, takes the help sheet away.
+pytestmark = pytest.mark.usefixtures("nothing_left_open")
 
 T0 = 1_763_712_345.0
 ALARM_RED = "#b80f26"

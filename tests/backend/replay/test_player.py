@@ -1,70 +1,18 @@
 """A replay shows what `frame?t=` shows."""
 
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import msgspec
 import pytest
 import sqlalchemy as sa
 
-from backend.coordination.lease import Leases
 from backend.live.past import frame_of, row_at
-from backend.live.record import PictureRecord, RecordNode, encode
-from backend.log.base import RecordedFrame
-from backend.log.derived import SqlDerivedWriter
-from backend.log.engine import make_engine, writing
-from backend.log.incident import Clock, Incident
-from backend.log.incidents import IncidentStore
-from backend.log.migrate import prepare
+from backend.log.incident import Clock
 from backend.log.read import SqlLogReader
 from backend.replay.clock import ReplayClock
+from backend.replay.control import Control
 from backend.replay.player import Player
-
-SECONDS = range(100, 160)
-LATE = 130
-"""From this second on the readings came 20 s late."""
-
-
-@pytest.fixture
-def engine(tmp_path: Path) -> Iterator[sa.Engine]:
-    url = f"sqlite:///{tmp_path / 'firethread.db'}"
-    prepare(url)
-    engine = make_engine(url)
-    yield engine
-    engine.dispose()
-
-
-def recorded(engine: sa.Engine, clock: Clock) -> Incident:
-    incident = IncidentStore(engine).create("a walk", clock)
-    epoch = Leases(lambda: writing(engine), "north").acquire(incident.id)
-    assert epoch is not None
-    rows = [
-        RecordedFrame(
-            second=second,
-            seq=second - 99,
-            received=second + (20.2 if second >= LATE else 0.2),
-            record=encode(
-                PictureRecord(
-                    t=second - 0.1,
-                    nodes=(
-                        RecordNode(node="base", role="base", t=100.0, position_m=(0.0, 0.0, 0.0)),
-                        RecordNode(
-                            node="ff1",
-                            role="responder",
-                            t=min(second, 140) - 0.1,
-                            position_m=(float(second), 0.0, 0.0),
-                            covariance_m2=(1.0, 0.0, 0.0, 1.0, 0.0, 1.0),
-                        ),
-                    ),
-                )
-            ),
-        )
-        for second in SECONDS
-        if second % 7
-    ]
-    SqlDerivedWriter(engine).save(incident.id, epoch, rows, None)
-    return incident
+from tests.backend.replay.walks import SECONDS, recorded
 
 
 def shown(messages: list[Any]) -> dict[str, Any]:
@@ -113,8 +61,7 @@ def test_a_seek_gives_a_whole_frame_and_then_deltas(engine: sa.Engine) -> None:
     clock = ReplayClock(100.0, 159.0, 1.0, wall_s=0.0)
     player = Player(reader, incident, clock)
     kinds = [_kind(player.message(1.0)), _kind(player.message(2.0))]
-    clock.seek(150.0, 2.0)
-    player.sought()
+    player.obey(Control(seek=150.0), 2.0)
     kinds += [_kind(player.message(2.0)), _kind(player.message(3.0))]
     assert kinds == ["frame", "delta", "frame", "delta"]
 

@@ -16,7 +16,7 @@ START_T, SECONDS = 1_000.0, 30
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     with running(tmp_path_factory.mktemp("replay") / "data") as running_server:
-        yield running_server
+        yield running_server.until_it_computes()
 
 
 @pytest.fixture(scope="module")
