@@ -8,6 +8,7 @@ import numpy as np
 
 from backend.bench.accuracy.judge import Verdict
 from estimator.evaluate import Errors
+from estimator.graph.dense import Array
 
 
 class Outcome(NamedTuple):
@@ -40,6 +41,7 @@ class Row(NamedTuple):
         entrant: its name.
         mode: `online` or `smoothed`.
         errors: means over the seeds that came to an end; None if none did.
+        unsure: standard errors of these means, by how the seeds differ; NaN where there are not two.
         shown: mean share of the responders' seconds with an estimate.
         seconds: mean of what a seed took (s).
         runs: so many seeds.
@@ -50,6 +52,7 @@ class Row(NamedTuple):
     entrant: str
     mode: str
     errors: Errors | None
+    unsure: Errors | None
     shown: float
     seconds: float
     runs: int
@@ -77,9 +80,18 @@ def _row(case: str, entrant: str, mode: str, runs: Sequence[Outcome]) -> Row:
     failures = tuple(f"seed {run.seed}: {run.failed}" for run in runs if run.failed is not None)
     done = [run for run in runs if run.verdict is not None]
     if not done:
-        return Row(case, entrant, mode, None, 0.0, 0.0, len(runs), failures)
+        return Row(case, entrant, mode, None, None, 0.0, 0.0, len(runs), failures)
     table = np.array([run.verdict.errors for run in done if run.verdict is not None])
     shown = float(np.mean([run.verdict.shown for run in done if run.verdict is not None]))
     seconds = float(np.mean([run.seconds for run in done]))
-    means = Errors(*table.mean(axis=0).tolist())
-    return Row(case, entrant, mode, means, shown, seconds, len(runs), failures)
+    means, unsure = Errors(*table.mean(axis=0).tolist()), Errors(*_standard_errors(table).tolist())
+    return Row(case, entrant, mode, means, unsure, shown, seconds, len(runs), failures)
+
+
+def _standard_errors(table: Array) -> Array:
+    """Of the means of a table's columns, seeds × n: all points of a seed share how its map is turned."""
+    seeds, columns = table.shape
+    if seeds < 2:
+        return np.full(columns, np.nan)
+    errors: Array = table.std(axis=0, ddof=1) / np.sqrt(seeds)
+    return errors

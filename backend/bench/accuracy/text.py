@@ -10,6 +10,7 @@ COLUMNS = (
     *("CE95 m", "VE95 m", "95 % in", "NEES", "shown", "took s"),
 )
 NONE = "–"
+WIDE = 12
 
 
 def head(seeds: int, left_out: Sequence[str]) -> str:
@@ -24,6 +25,7 @@ def head(seeds: int, left_out: Sequence[str]) -> str:
         "online: each point from what was posted until it was shown; smoothed: from everything",
         "%: of the way walked; aligned: RMSE after the best rigid motion; 95 % in: % of the truth inside the",
         "95 % ellipse; NEES: per degree of freedom, 1 is honest; shown: share of seconds with an estimate",
+        "±: standard error by how the seeds differ: all points of a seed share how its map is turned",
         *(f"left out: {line}" for line in left_out),
     ]
     return "\n".join(lines)
@@ -31,9 +33,9 @@ def head(seeds: int, left_out: Sequence[str]) -> str:
 
 def cells(row: Row) -> list[str]:
     """A row's figures, as `COLUMNS` names them; empty if every seed failed."""
-    if row.errors is None:
+    if row.errors is None or row.unsure is None:
         return []
-    e = row.errors
+    e, unsure = row.errors, row.unsure
     metres = (
         e.rmse_m,
         e.mean_m,
@@ -46,8 +48,8 @@ def cells(row: Row) -> list[str]:
     )
     return [
         *(_number(value, 2) for value in metres),
-        _number(100.0 * e.coverage, 0),
-        _number(e.nees, 2),
+        _unsure(100.0 * e.coverage, 100.0 * unsure.coverage, 0),
+        _unsure(e.nees, unsure.nees, 2),
         _number(100.0 * row.shown, 0) + " %",
         _number(row.seconds, 1),
     ]
@@ -63,14 +65,19 @@ def failures(row: Row) -> str:
 def table(case: str, rows: Sequence[Row]) -> str:
     """The table of one case."""
     wide = max([len(row.entrant) for row in rows], default=0) + 11
-    lines = ["", f"{case:<{wide}}" + "".join(f"{name:>10}" for name in COLUMNS)]
+    lines = ["", f"{case:<{wide}}" + "".join(f"{name:>{WIDE}}" for name in COLUMNS)]
     if not rows:
         lines.append("  nobody takes part")
     for row in rows:
         name = f"  {row.mode:<9}{row.entrant}"
-        line = f"{name:<{wide}}" + "".join(f"{cell:>10}" for cell in cells(row))
+        line = f"{name:<{wide}}" + "".join(f"{cell:>{WIDE}}" for cell in cells(row))
         lines.append(f"{line}  {failures(row)}".rstrip())
     return "\n".join(lines)
+
+
+def _unsure(value: float, error: float, digits: int) -> str:
+    """A mean with its standard error, if there is one."""
+    return _number(value, digits) + ("" if math.isnan(error) else f"±{error:.{digits}f}")
 
 
 def _number(value: float, digits: int) -> str:

@@ -65,3 +65,17 @@ def test_a_row_is_the_mean_over_the_seeds_that_came_to_an_end() -> None:
     assert cells(second)[0] == "1.50"
     assert cells(second)[-1] == "2.0"
     assert "1 of 3 failed, seed 2: lost" in table("c", [first, second])
+
+
+def test_how_honest_an_entrant_is_is_told_as_unsure_as_the_seeds_differ() -> None:
+    """All points of a seed share how its map is turned: twenty seeds are twenty draws, however long."""
+    off_m = (0.5, 1.0, 2.0, 1.0)
+    outcomes = [
+        Outcome("c", seed, "x", "smoothed", 1.0, judge({"a": beside("a", m, range(11))}, WALKS, heights=True))
+        for seed, m in enumerate(off_m)
+    ]
+    nees = [run.verdict.errors.nees for run in outcomes if run.verdict is not None]
+    (row,), (alone,) = rows_of(outcomes), rows_of(outcomes[:1])
+    error = np.std(nees, ddof=1) / 2.0
+    assert cells(row)[9] == f"{np.mean(nees):.2f}±{error:.2f}"
+    assert "±" not in "".join(cells(alone))
