@@ -178,6 +178,8 @@ class Channel:
             and _rest(before) == _rest(frame)
             and had.keys() == nodes.keys()
         ):
+            # Who comes now is told the time that it is, not when something has changed.
+            self._frame, self._whole = frame, None
             return
         self._frame, self._nodes, self._whole = frame, nodes, None
         self._version += 1

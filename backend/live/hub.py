@@ -99,7 +99,8 @@ class Hub:
         except (Unavailable, TimeoutError):
             if channel is None:
                 raise
-            return channel
+            # It may have been let go of meanwhile: who joined it then would never hear anything.
+            return self._channels.setdefault(incident, channel)
 
     async def _read_channel(self, incident: str) -> Channel:
         known = await asyncio.to_thread(self._incidents.get, incident)
@@ -192,19 +193,19 @@ class Hub:
     async def _beat(self) -> None:
         while True:
             await asyncio.sleep(BEAT_S)
-            try:
-                self._beat_once()
-            except Exception:
-                # Every screen would take the silence for a lost server.
-                log.exception("a heartbeat failed")
+            self._forget()
+            for channel in [channel for channel in self._channels.values() if channel.busy]:
+                self._beat_once(channel)
 
-    def _beat_once(self) -> None:
-        self._forget()
-        for channel in [channel for channel in self._channels.values() if channel.busy]:
+    def _beat_once(self, channel: Channel) -> None:
+        try:
             now = time.time()
             if abs(now - channel.shown_t) >= AGE_AFTER_S:
                 channel.show(now)
             channel.beat(now)
+        except Exception:
+            # The screens of every other incident would take the silence for a lost server.
+            log.exception("a heartbeat failed", incident=channel.incident.id)
 
     async def _refresh(self) -> None:
         while True:

@@ -102,6 +102,17 @@ def test_nothing_is_said_where_nothing_has_changed(channel: Channel) -> None:
     assert len(tablet.messages) == 1
 
 
+def test_who_joins_where_nothing_changes_is_told_what_time_it_is(incident: Make) -> None:
+    channel = Channel(incident(clock="live"))
+    early, _ = joined(channel)
+    channel.show(100.0)
+    late = Screen(Tablet())
+    channel.catch_up(late)
+    assert isinstance(late.connection, Tablet)
+    assert [message["clock_t"] for message in late.connection.messages] == [100.0]
+    assert len(early.messages) == 1
+
+
 def test_an_entry_that_changes_no_node_is_told_all_the_same(channel: Channel) -> None:
     channel.take(1, at(0.0, 1.0))
     tablet, _ = joined(channel)
