@@ -32,6 +32,10 @@ export class Door {
   deadLink = false;
   /** An attempt to load what the address names is under way. */
   private beginning = false;
+  /** How often somebody has asked for an incident: what was asked for before comes too late. */
+  private wishes = 0;
+  /** How often the list was asked for. */
+  private looks = 0;
 
   constructor(private readonly owner: DoorOwner) {}
 
@@ -40,9 +44,11 @@ export class Door {
     if (this.beginning) return;
     this.beginning = true;
     const link = this.owner.shown;
+    const wishes = this.wishes;
     try {
       await this.refresh();
       this.signInNeeded = false;
+      if (wishes !== this.wishes) return;
       await this.follow({ ...link, incident: link.incident ?? this.incidents[0]?.id ?? null });
     } catch (cause) {
       this.fail(cause);
@@ -53,13 +59,17 @@ export class Door {
 
   /** Shows what a link names; nothing new where it names no incident. */
   async follow(link: DeepLink, left: Left | null = null): Promise<void> {
+    if (link.incident === null) return;
+    this.wishes += 1;
+    const wish = this.wishes;
     try {
-      if (link.incident === null) return;
       const incident = await api.incident(link.incident);
+      if (wish !== this.wishes) return;
       this.trouble = null;
       this.left = left;
       this.owner.open(incident, link);
     } catch (cause) {
+      if (wish !== this.wishes) return;
       this.deadLink = cause instanceof api.RequestFailed && cause.status === 404;
       this.fail(cause);
     }
@@ -83,8 +93,15 @@ export class Door {
     if (this.left !== null) await this.follow(this.left.link);
   }
 
+  /** Reads the list again; an answer that comes after a newer one was asked for tells nothing. */
   async refresh(): Promise<void> {
-    const list = await api.incidents();
+    this.looks += 1;
+    const look = this.looks;
+    const list = await api.incidents().catch((cause) => {
+      if (look === this.looks) throw cause;
+      return null;
+    });
+    if (list === null || look !== this.looks) return;
     this.incidents = list;
     const current = list.find(({ id }) => id === this.owner.incident?.id);
     if (current) this.owner.renewed(current);

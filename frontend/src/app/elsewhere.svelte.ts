@@ -34,6 +34,8 @@ export class Elsewhere {
   glimpses = $state.raw<ReadonlyMap<string, Glimpse>>(new Map());
   /** Local monotonic clock when everything there was to see had been seen (ms). */
   private seenMs = $state(performance.now());
+  /** What was forgotten since the look that is under way began. */
+  private readonly forgotten = new Set<string>();
 
   constructor(
     private readonly source: ElsewhereSource,
@@ -55,6 +57,7 @@ export class Elsewhere {
    * @throws the first refusal
    */
   async look(): Promise<void> {
+    this.forgotten.clear();
     const active = await this.source.active();
     const shown = this.owner.incident?.id ?? null;
     const looks = await Promise.allSettled(
@@ -65,7 +68,9 @@ export class Elsewhere {
     );
     // Of what is shown, the live link tells; what was seen before is old when another one is shown.
     const known = [...this.glimpses].filter(([id]) => id !== shown && active.some((one) => one.id === id));
-    const seen = looks.flatMap((look) => (look.status === "fulfilled" ? [look.value] : []));
+    const seen = looks
+      .flatMap((look) => (look.status === "fulfilled" ? [look.value] : []))
+      .filter(([id]) => !this.forgotten.has(id));
     this.glimpses = new Map([...known, ...seen]);
     this.active = active;
     const refused = looks.find((look) => look.status === "rejected");
@@ -75,6 +80,7 @@ export class Elsewhere {
 
   /** The commander was there, and may have answered: what was seen before is no longer so. */
   forget(id: string): void {
+    this.forgotten.add(id);
     this.glimpses = new Map([...this.glimpses].filter(([known]) => known !== id));
   }
 

@@ -81,3 +81,13 @@ test("it is said when nothing has been seen for a while, where there is somethin
   await elsewhere.look();
   expect(elsewhere.silentS(performance.now() + 4000)).toBeNull();
 });
+
+test("a look that was under way while the commander was there does not bring back what was seen before", async () => {
+  const { elsewhere } = world([HERE, MILL]);
+  const look = elsewhere.look();
+  elsewhere.forget("mill");
+  await look;
+  expect(elsewhere.glimpses.size).toBe(0);
+  await elsewhere.look();
+  expect([...elsewhere.glimpses.keys()]).toEqual(["mill"]);
+});

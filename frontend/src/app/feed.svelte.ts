@@ -9,8 +9,8 @@ const STANDING: IncidentClock = { t: 0, localMs: 0, rate: 0 };
 export interface FeedOwner {
   /** Incident seconds per local second, between two messages. */
   rate(): number;
-  /** A frame or delta has changed the picture. */
-  changed(message: FrameMessage | DeltaMessage): void;
+  /** A frame or delta has changed the picture; `asked`: to what is asked for, not to what was. */
+  changed(message: FrameMessage | DeltaMessage, asked: boolean): void;
   heartbeat(message: HeartbeatMessage): void;
   lost(): void;
   /** The link is open again after it was lost. */
@@ -73,7 +73,8 @@ export class Feed {
 
   private take(message: FrameMessage | DeltaMessage, picture: Picture, t: number | null): void {
     this.picture = picture;
-    if (t !== null) this.keepTime(t);
-    this.owner.changed(message);
+    this.owner.changed(message, t !== null);
+    // A picture never stands under another moment than its own.
+    this.keepTime(t ?? message.clock_t);
   }
 }

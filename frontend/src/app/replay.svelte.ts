@@ -17,11 +17,18 @@ export class Replay {
   on = $state(false);
   paused = $state(false);
   speed = $state(1);
+  /** The moment that was asked for and is not shown yet (Unix s): until then the clock stands with what is shown. */
+  soughtT = $state<number | null>(null);
   readonly feed: Feed = new Feed({
-    rate: () => (this.paused || this.feed.isLost ? 0 : this.speed),
-    changed: () => undefined,
+    rate: () => (this.paused || this.feed.isLost || this.soughtT !== null ? 0 : this.speed),
+    changed: (_, asked) => {
+      if (asked) this.soughtT = null;
+    },
     heartbeat: ({ ended }) => {
-      if (ended) this.paused = true;
+      if (!ended || this.paused) return;
+      this.paused = true;
+      // Whoever goes back from the end would else be shown a replay that goes on under the word that it stands.
+      this.source?.setPaused(true);
     },
     // The past does not age because nobody tells of it: it stands still until it is heard again.
     lost: () => this.feed.keepTime(this.owner.now),
@@ -46,6 +53,7 @@ export class Replay {
     this.feed.follow(this.source);
     this.paused = paused;
     this.on = true;
+    this.soughtT = at;
     this.feed.keepTime(at);
   }
 
@@ -54,6 +62,7 @@ export class Replay {
     this.on = false;
     this.paused = false;
     this.speed = 1;
+    this.soughtT = null;
     this.feed.leave();
     this.source = null;
   }
@@ -66,8 +75,9 @@ export class Replay {
       return;
     }
     this.source.seek(at);
+    this.soughtT = at;
     if (this.feed.isLost) this.feed.blank();
-    this.feed.keepTime(at);
+    this.feed.keepTime(this.feed.picture === null ? at : this.owner.now);
   }
 
   /** Pauses or goes on; from live: pauses here. */

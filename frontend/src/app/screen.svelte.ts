@@ -79,6 +79,8 @@ export class Screen implements DoorOwner, ReplayOwner {
   readonly levels = $derived(this.incident?.levels ?? []);
   /** Incident time (Unix s). */
   readonly now = $derived(incidentTime(this.feed.clock, this.localMs));
+  /** The moment that is asked for (Unix s): what is shown, or, until it comes, what was sought. */
+  readonly askedT = $derived(this.replay.soughtT ?? this.now);
   readonly liveNow = $derived(incidentTime(this.live.clock, this.localMs));
   readonly picture = $derived(withStoreysAged(this.feed.picture, this.now, this.levels));
   /** As the incident is now, also while its past is looked at: a live alarm has the live place. */
@@ -131,7 +133,7 @@ export class Screen implements DoorOwner, ReplayOwner {
       this.trackList,
       this.earliestT,
       // A link may lead to the past before anything live has come.
-      Math.max(this.liveNow, this.now, this.incident?.last_t ?? 0),
+      Math.max(this.liveNow, this.askedT, this.incident?.last_t ?? 0),
     ),
   );
   /** What the address is to name, so that it can be passed on; what was asked for until it is shown. */
@@ -140,12 +142,12 @@ export class Screen implements DoorOwner, ReplayOwner {
       ? this.wanted
       : {
           incident: this.incident.id,
-          t: this.replay.on && this.replay.paused ? this.now : null,
+          t: this.replay.on && this.replay.paused ? this.askedT : null,
           node: this.selected,
           level: this.level,
         },
   );
-  readonly pastT = $derived(this.replay.on ? this.now : null);
+  readonly pastT = $derived(this.replay.on ? this.askedT : null);
   readonly lossIsSaid = $derived(this.lostLink !== null);
   readonly callsElsewhere = $derived(
     callsElsewhere(this.elsewhere.active, this.incident?.id ?? null, this.elsewhere.glimpses),

@@ -11,6 +11,11 @@ export interface Sought {
 export const ANSWERED_WITHIN_MS = 2000;
 const ROUNDING_S = 1e-3;
 
+/** Whether an answer should have come by `localMs` (local monotonic clock, ms). */
+export function isOverdue(sought: Sought, localMs: number): boolean {
+  return localMs - sought.localMs > ANSWERED_WITHIN_MS;
+}
+
 /**
  * Whether a message has been made after a seek. One made before would put the clock back: of three quick
  * steps the last two would begin where the first one did.
@@ -23,6 +28,6 @@ const ROUNDING_S = 1e-3;
 export function answers(sought: Sought, t: number, localMs: number, speed: number): boolean {
   const waitedMs = localMs - sought.localMs;
   const after = t - sought.t;
-  if (waitedMs > ANSWERED_WITHIN_MS) return true;
+  if (isOverdue(sought, localMs)) return true;
   return after >= -ROUNDING_S && after <= (speed * waitedMs) / 1000 + ROUNDING_S;
 }

@@ -1,5 +1,5 @@
 /** A socket that comes back: after a close, and after silence. */
-import type { LiveMessage } from "../domain/types";
+import type { DeltaMessage, FrameMessage, HeartbeatMessage, LiveMessage } from "../domain/types";
 import { backoffMs } from "./backoff";
 import { Sleep } from "./sleep";
 import { type LinkState, type Listener, NOT_CONNECTED, type Source } from "./source";
@@ -7,6 +7,9 @@ import { type LinkState, type Listener, NOT_CONNECTED, type Source } from "./sou
 /** The server sends at least a heartbeat every 2 s; silence longer than this is a lost connection. */
 export const SILENCE_MS = 5000;
 const WATCH_EVERY_MS = 500;
+
+/** A message that tells a moment: `clock_t` of a picture, `t` of a heartbeat. */
+export type Told = FrameMessage | DeltaMessage | HeartbeatMessage;
 
 /** A Source over a WebSocket of live messages; what differs between sources is the address. */
 export class ReconnectingSource implements Source {
@@ -55,12 +58,12 @@ export class ReconnectingSource implements Source {
   protected opened(): void {}
 
   /** Whether a message of `t` (Unix s) is of what was asked for at all; called with each. */
-  protected concerns(_t: number): boolean {
+  protected concerns(_type: Told["type"], _t: number): boolean {
     return true;
   }
 
   /** Incident time by a message of `t` (Unix s), or null: it tells none; called with each. */
-  protected time(t: number): number | null {
+  protected time(_type: Told["type"], t: number): number | null {
     return t;
   }
 
@@ -78,8 +81,8 @@ export class ReconnectingSource implements Source {
     this.become({ link: "open", lastWordMs: performance.now(), attempts: 0 });
     if (message.type === "error") return;
     const of = message.type === "heartbeat" ? message.t : message.clock_t;
-    if (!this.concerns(of)) return;
-    const t = this.time(of);
+    if (!this.concerns(message.type, of)) return;
+    const t = this.time(message.type, of);
     for (const listener of this.listeners) {
       if (message.type === "frame") listener.frame(message, t);
       else if (message.type === "delta") listener.delta(message, t);

@@ -1,5 +1,5 @@
-import { answers, type Sought } from "../domain/seeking";
-import { ReconnectingSource, socketAddress } from "./reconnecting";
+import { answers, isOverdue, type Sought } from "../domain/seeking";
+import { ReconnectingSource, socketAddress, type Told } from "./reconnecting";
 
 export interface ReplayFrom {
   /** First moment that can be sought (Unix s). */
@@ -51,19 +51,25 @@ export class ReplaySource extends ReconnectingSource {
     this.seek(this.at.t);
   }
 
-  protected override concerns(t: number): boolean {
-    this.opening &&= !this.isAnswer(t);
+  /** A picture begins with a whole frame: a change to another one, laid over what is shown, would show neither. */
+  protected override concerns(type: Told["type"], t: number): boolean {
+    this.opening &&= type !== "frame" || !this.isAnswer(type, t);
     return !this.opening;
   }
 
-  protected override time(t: number): number | null {
-    if (!this.isAnswer(t)) return null;
+  protected override time(type: Told["type"], t: number): number | null {
+    if (!this.isAnswer(type, t)) return null;
     this.sought = null;
     this.at.t = t;
     return t;
   }
 
-  private isAnswer(t: number): boolean {
-    return this.sought === null || answers(this.sought, t, performance.now(), this.at.speed);
+  /** A heartbeat is no answer to a seek: it tells where the replay is, and the picture may be of where it was. */
+  private isAnswer(type: Told["type"], t: number): boolean {
+    if (this.sought === null) return true;
+    const localMs = performance.now();
+    return type === "heartbeat"
+      ? isOverdue(this.sought, localMs)
+      : answers(this.sought, t, localMs, this.at.speed);
   }
 }

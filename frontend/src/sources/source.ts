@@ -11,7 +11,7 @@ export interface LinkState {
 }
 
 /** Each message comes with the incident time that it tells (Unix s), or null: it was on its way when another
- * was sought. */
+ * was sought, which a picture will answer. */
 export interface Listener {
   frame(message: FrameMessage, t: number | null): void;
   delta(message: DeltaMessage, t: number | null): void;

@@ -1,0 +1,93 @@
+import { afterEach, beforeEach, expect, test, vi } from "vitest";
+import { incidentTime } from "../domain/clock";
+import { aFrame, aNode, anIncident, NOON } from "../domain/samples";
+import type { HeartbeatMessage } from "../domain/types";
+import type { Listener } from "../sources/source";
+import { Replay } from "./replay.svelte";
+
+/** What the newest source was told, and the way to tell something by it. */
+let way: { listener: Listener; told: [string, unknown][] };
+
+vi.mock("../sources/replay-source", () => ({
+  ReplaySource: class {
+    subscribe(listener: Listener) {
+      way = { listener, told: [] };
+      return () => undefined;
+    }
+    seek(t: number) {
+      way.told.push(["seek", t]);
+    }
+    setPaused(paused: boolean) {
+      way.told.push(["paused", paused]);
+    }
+    setSpeed(speed: number) {
+      way.told.push(["speed", speed]);
+    }
+    close() {}
+  },
+}));
+
+let replay: Replay;
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  replay = new Replay({
+    incident: anIncident({ first_t: NOON, last_t: NOON + 100 }),
+    extent: { from: NOON, to: NOON + 100 },
+    get now(): number {
+      return shownT();
+    },
+  });
+});
+
+afterEach(() => {
+  vi.useRealTimers();
+});
+
+function shownT(): number {
+  return incidentTime(replay.feed.clock, performance.now());
+}
+
+/** A picture of a moment; one that was on its way when another was sought tells no time. */
+function shows(t: number, asked = true): void {
+  way.listener.frame(aFrame([aNode()], { clock_t: t }), asked ? t : null);
+}
+
+function beats(t: number, ended = false): void {
+  const beat: HeartbeatMessage = { type: "heartbeat", t, seq: 1, paused: false, speed: 1, ended };
+  way.listener.heartbeat(beat, t);
+}
+
+test("until what was sought is shown, the clock stands at the moment of what is shown", () => {
+  replay.begin(NOON + 50, false);
+  shows(NOON + 50);
+  vi.advanceTimersByTime(2000);
+  expect(shownT()).toBeCloseTo(NOON + 52);
+  replay.seek(NOON + 10);
+  vi.advanceTimersByTime(1500);
+  expect([shownT(), replay.soughtT]).toEqual([NOON + 52, NOON + 10]);
+  shows(NOON + 52.1, false);
+  expect([shownT(), replay.soughtT]).toEqual([NOON + 52.1, NOON + 10]);
+  shows(NOON + 10);
+  expect([shownT(), replay.soughtT]).toEqual([NOON + 10, null]);
+  vi.advanceTimersByTime(1000);
+  expect(shownT()).toBeCloseTo(NOON + 11);
+});
+
+test("whoever goes back from the end is shown a replay that stands, as the button says", () => {
+  replay.begin(NOON + 99, false);
+  shows(NOON + 99);
+  beats(NOON + 100, true);
+  beats(NOON + 100, true);
+  expect([replay.paused, way.told]).toEqual([true, [["paused", true]]]);
+});
+
+test("a moment sought while the server is away stands over no other picture, nor does it go on", () => {
+  replay.begin(NOON + 50, false);
+  shows(NOON + 50);
+  way.listener.state({ link: "lost", lastWordMs: 0, attempts: 1 });
+  replay.seek(NOON + 10);
+  expect([replay.feed.picture, shownT()]).toEqual([null, NOON + 10]);
+  vi.advanceTimersByTime(3000);
+  expect(shownT()).toBe(NOON + 10);
+});
