@@ -53,5 +53,5 @@ class Screen:
 def watching(url: str, path: str) -> Iterator[Screen]:
     """A screen on a path of the API for the length of a block."""
     address = url.replace("http", "ws", 1) + "/api/v1" + path
-    with connect(address, compression=None, max_size=None) as connection:
+    with connect(address, compression=None, max_size=None, open_timeout=30) as connection:
         yield Screen(connection)

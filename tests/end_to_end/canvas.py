@@ -44,6 +44,10 @@ _WIDTH_BETWEEN = """(canvas, {colour, top, bottom}) => {
   return Math.max(0, right - left) / ratio;
 }"""
 
+_DRAWN = """async () => {
+  for (let frame = 0; frame < 2; frame += 1) await new Promise(requestAnimationFrame);
+}"""
+
 
 @dataclass(frozen=True)
 class Pixels:
@@ -107,6 +111,8 @@ class MapSeen:
         seen: list[Pixels] = []
 
         def still() -> Pixels | None:
+            # However slow the machine: what was to be drawn is drawn.
+            self.page.evaluate(_DRAWN)
             seen.append(self.colour(colour))
             if len(seen) < 2 or not seen[-1].count:
                 return None

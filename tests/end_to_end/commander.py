@@ -13,6 +13,7 @@ from tests.end_to_end.canvas import MapSeen
 from tests.end_to_end.device import DeviceUsed
 from tests.end_to_end.layout import LayoutSeen
 from tests.end_to_end.letting_in import SignInSeen
+from tests.end_to_end.noting import BoardNoted
 from tests.end_to_end.others import OthersSeen
 from tests.end_to_end.past import PastCompared
 from tests.running import eventually
@@ -28,7 +29,7 @@ class BoardRow:
     error: str
 
 
-class Commander(MapSeen, LayoutSeen, OthersSeen, PastCompared, SignInSeen, DeviceUsed):
+class Commander(MapSeen, LayoutSeen, OthersSeen, PastCompared, SignInSeen, DeviceUsed, BoardNoted):
     """What a commander sees and does.
 
     Args:

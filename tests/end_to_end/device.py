@@ -16,21 +16,23 @@ class DeviceUsed:
     def __init__(self, page: Page) -> None:
         self.page = page
 
-    def sleeps(self, seconds: float) -> None:
-        """Wake up after that: only the wall clock has gone on; the server is slow to answer."""
+    def sleeps(self, seconds: float) -> Callable[[], None]:
+        """Wake up after that: only the wall clock has gone on; what lets the server answer."""
         self.page.evaluate(
             """(slept) => {
               const [now, Socket] = [Date.now, window.WebSocket];
               Date.now = () => now() + 1000 * slept;
+              const answered = new Promise((answer) => { window.theServerAnswers = answer; });
               window.WebSocket = class {
                 constructor(address) {
-                  setTimeout(() => { Object.assign(new Socket(address), this); }, 1500);
+                  answered.then(() => this.closed || Object.assign(new Socket(address), this));
                 }
-                close() {}
+                close() { this.closed = true; }
               };
             }""",
             seconds,
         )
+        return lambda: self.page.evaluate("window.theServerAnswers()")
 
     def waits_for_pictures(self) -> Callable[[], None]:
         """From the next page on no live picture comes through; what lets them through."""

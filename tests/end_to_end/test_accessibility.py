@@ -17,7 +17,7 @@ THEMES = ["day", "dusk", "night"]
 def own_server(tmp_path: Path) -> Iterator[Server]:
     """A server that this test may kill."""
     with running(tmp_path / "data") as server:
-        yield server
+        yield server.until_it_computes()
 
 
 def test_axe_finds_no_fault_by_day_dusk_and_night(

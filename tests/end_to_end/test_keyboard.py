@@ -61,7 +61,7 @@ def test_a_line_of_the_board_selects_its_responder(server: Server, post: Post, c
     commander.selects("ff2")
     eventually(lambda: commander.selected == "ff2")
     assert "FF2" in commander.card
-    assert "node=ff2" in commander.page.url
+    eventually(lambda: "node=ff2" in commander.page.url)
 
 
 def seconds(clock: str) -> int:

@@ -110,7 +110,8 @@ def test_acknowledged_batches_survive_and_tracks_do_not_change(tmp_path: Path) -
 
         post.frame(incident, min_seq=len(lines), timeout_s=60)
         assert post.http.patch(f"/incidents/{incident}", json={"state": "closed"}).status_code == 200
-        disturbed = eventually_settled(post, incident)
+        newest_t = max(reading["t"] for line in lines for reading in line["readings"])
+        disturbed = eventually_settled(post, incident, newest_t)
     finally:
         server.stop()
 
@@ -121,13 +122,15 @@ def test_acknowledged_batches_survive_and_tracks_do_not_change(tmp_path: Path) -
             post.telemetry(again, line["batch"], line["readings"], gateway=line["gateway"])
         post.frame(again, min_seq=len(lines), timeout_s=60)
         assert post.http.patch(f"/incidents/{again}", json={"state": "closed"}).status_code == 200
-        assert eventually_settled(post, again) == disturbed
+        assert eventually_settled(post, again, newest_t) == disturbed
 
 
-def eventually_settled(post: Post, incident: str) -> bytes:
-    """The tracks of a closed incident once the worker has written its last row."""
+def eventually_settled(post: Post, incident: str, newest_t: float) -> bytes:
+    """The tracks of a closed incident once the worker has written its last row, with its newest reading."""
 
     def same_twice() -> bytes | None:
+        if post.http.get(f"/incidents/{incident}").json()["last_t"] < newest_t:
+            return None
         before = post.tracks(incident)
         time.sleep(1.5)
         return before if before == post.tracks(incident) and len(before) > 1000 else None

@@ -9,7 +9,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from tests.backend.refusing import assert_refused
-from tests.running import Post, Server, eventually, running
+from tests.running import READY_WITHIN_S, Post, Server, eventually, running
 from tests.watching import watching
 
 IDLE_SOCKETS = 1_100
@@ -19,7 +19,7 @@ ROUNDS = 40
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     with running(tmp_path_factory.mktemp("live") / "data") as running_server:
-        yield running_server
+        yield running_server.until_it_computes()
 
 
 @pytest.fixture
@@ -159,7 +159,7 @@ def test_idle_sockets_do_not_end_the_server(server: Server, post: Post) -> None:
 
 
 def test_dots_age_while_the_worker_is_dead(server: Server, post: Post) -> None:
-    incident = post.open_incident(clock="live", settings={"stale_after_s": 1.0, "lost_after_s": 4.0})
+    incident = post.open_incident(clock="live", settings={"stale_after_s": 4.0, "lost_after_s": 7.0})
     with watching(server.url, f"/incidents/{incident}/live") as screen:
         post.telemetry(incident, "b1", [fix(time.time())])
         screen.until(lambda m: m["type"] == "delta" and m["nodes"])
@@ -177,7 +177,7 @@ def test_the_picture_goes_on_after_the_worker_has_come_back(server: Server, post
         screen.hear()
         eventually(server.kill_worker)
         post.telemetry(incident, "b2", [fix(11.0, 7.0)])
-        screen.until(lambda m: m["type"] == "delta" and m["seq"] == 2, within_s=20.0)
+        screen.until(lambda m: m["type"] == "delta" and m["seq"] == 2, within_s=READY_WITHIN_S)
 
 
 def test_a_server_that_stops_says_so(tmp_path_factory: pytest.TempPathFactory) -> None:

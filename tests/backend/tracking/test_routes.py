@@ -8,11 +8,13 @@ from typing import Any
 import msgspec
 import pytest
 
+from backend.log.engine import make_engine
+from backend.log.read import SqlLogReader
 from backend.tracking.routes import relative_position
 from estimator.estimate import Relative
 from tests.estimator.inertial.gait import Stride
 from tests.estimator.inertial.gait import walked as boot_walked
-from tests.running import Post, Server, eventually, running
+from tests.running import Post, Server, eventually, quickest_s, running
 
 START_T = 1_000.0
 SECONDS = 20
@@ -211,9 +213,9 @@ def test_the_smoothed_track_uses_everything(post: Post, walked: str) -> None:
     smoothed = points(post, walked, "ff1", view="smoothed")
     assert [point[0] for point in smoothed[:3]] == [START_T, START_T + 1, START_T + 2]
     assert smoothed[10][1:3] == pytest.approx([10.0, 0.0], abs=1.0)
-    began = time.monotonic()
     assert points(post, walked, "ff1", view="smoothed") == smoothed
-    assert time.monotonic() - began < 1.0, "the second asking should cost nothing"
+    again_s = quickest_s(lambda: points(post, walked, "ff1", view="smoothed"))
+    assert again_s < 1.0, "the second asking should cost nothing"
 
 
 def test_the_relative_position_comes_with_its_own_uncertainty(post: Post, walked: str) -> None:
@@ -229,7 +231,9 @@ def test_the_relative_position_is_told_while_the_worker_is_away_and_after_closin
     server: Server, post: Post, walked: str
 ) -> None:
     expected = get(post, walked, "relative", a="ff1", b="ff2")
-    time.sleep(2.5)
+    engine = make_engine(f"sqlite:///{server.data / 'firethread.db'}")
+    eventually(lambda: (kept := SqlLogReader(engine).snapshot(walked)) and kept.seq == 2 * SECONDS + 2)
+    engine.dispose()
     server.kill_worker()
     assert get(post, walked, "relative", a="ff1", b="ff2") == expected
     assert get(post, walked, "relative", a="ff1", b="nobody")[0] == 404
