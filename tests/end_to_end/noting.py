@@ -30,11 +30,15 @@ class BoardNoted:
             }"""
         )
 
+    @property
+    def notes(self) -> list[tuple[str, str, str]]:
+        """Name, status and age, in the order in which they came."""
+        return [(name, status, age) for name, status, age in self.page.evaluate("window.noted")]
+
     def noted(self, name: str) -> dict[str, str]:
         """The words that a responder has had for its status, in their order, each with its first age."""
-        lines: list[list[str]] = self.page.evaluate("window.noted")
         found: dict[str, str] = {}
-        for of, status, age in lines:
+        for of, status, age in self.notes:
             if of == name:
                 found.setdefault(status, age)
         return found

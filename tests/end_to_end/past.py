@@ -13,6 +13,24 @@ class PastCompared:
     def __init__(self, page: Page) -> None:
         self.page = page
 
+    def drags_the_handle(self, to: float) -> None:
+        """Lead the timeline's handle with one finger from its right end to a share of its length."""
+        handle = self.page.get_by_test_id("timeline").get_by_role("slider")
+        box = handle.bounding_box()
+        assert box is not None
+        y = box["y"] + box["height"] / 2
+        self.page.mouse.move(box["x"] + box["width"] - 8, y)
+        self.page.mouse.down()
+        for part in range(1, 11):
+            self.page.mouse.move(box["x"] + box["width"] * (1 - part * (1 - to) / 10), y)
+            self.page.wait_for_timeout(50)
+        self.page.mouse.up()
+
+    @property
+    def play_button(self) -> str:
+        """Play, where the replay stands; else Pause."""
+        return self.page.get_by_test_id("play").inner_text()
+
     @property
     def event(self) -> str:
         """What the timeline says happened at the moment that is shown."""

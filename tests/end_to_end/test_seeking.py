@@ -1,0 +1,64 @@
+"""However a moment of the past is sought, what is shown and the time that is said belong together."""
+
+import time
+
+import pytest
+
+from tests.end_to_end.commander import Commander
+from tests.end_to_end.scene import base, heard, recorded, responder, step
+from tests.running import Post, Server, eventually
+
+T0 = 1_763_712_345.0
+LONG_S = 59
+
+
+@pytest.fixture
+def walked(server: Server, post: Post, commander: Commander) -> str:
+    """An incident on the screen in which one walks for a minute, while nothing more is heard of the other."""
+    incident = post.open_incident()
+    heard(
+        post,
+        incident,
+        base(T0),
+        responder(T0, "walker", "A", [2, 2, 0]),
+        responder(T0, "quiet", "B", [4, 3, 0]),
+    )
+    heard(post, incident, *(step(T0 + second, "walker", [0.5, 0.2, 0]) for second in range(1, LONG_S + 1)))
+    recorded(post, incident, T0 + LONG_S)
+    commander.opens(server.url, incident)
+    return incident
+
+
+@pytest.mark.usefixtures("walked")
+def test_under_a_storm_of_seeks_no_picture_stands_under_another_moment(commander: Commander) -> None:
+    commander.notes_the_board()
+    sought = [T0 + 1 + (17 * number) % 57 for number in range(30)]
+    for t in sought:
+        commander.scrubs_to(t)
+    eventually(lambda: commander.board() and commander.board()["QUIET"].age_s == sought[-1] - T0)
+    # He reports each second: whenever he is shown, it is as he was just then.
+    assert {age for name, _, age in commander.notes if name == "WALKER"} == {"0 s"}
+
+
+@pytest.mark.usefixtures("walked")
+def test_the_handle_stays_under_the_finger_that_leads_it_from_now_into_the_past(commander: Commander) -> None:
+    commander.drags_the_handle(to=0.3)
+    eventually(lambda: commander.mode == "REPLAY" and commander.board())
+    assert commander.board()["QUIET"].age_s == pytest.approx(0.3 * LONG_S, abs=3)
+
+
+@pytest.mark.usefixtures("walked")
+def test_who_steps_back_from_the_end_of_a_replay_sees_it_stand_as_its_button_says(
+    commander: Commander,
+) -> None:
+    newest = commander.clock
+    commander.scrubs_to(T0 + LONG_S - 2)
+    eventually(lambda: commander.mode == "REPLAY" and commander.board())
+    commander.plays()
+    eventually(lambda: commander.play_button == "Play" and commander.clock == newest)
+    for _ in range(5):
+        commander.presses("ArrowLeft")
+    eventually(lambda: commander.board()["QUIET"].age_s == LONG_S - 5)
+    stands = commander.clock
+    time.sleep(2.5)  # in which a replay that goes on would be seen to
+    assert (commander.clock, commander.play_button) == (stands, "Play")
