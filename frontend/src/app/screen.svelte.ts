@@ -200,6 +200,8 @@ export class Screen implements DoorOwner, ReplayOwner {
   }
 
   renewed(incident: Incident): void {
+    // Closed is for good: an answer that was long on its way does not open it again.
+    if (this.closed && incident.state === "active") return;
     this.incident = incident;
   }
 

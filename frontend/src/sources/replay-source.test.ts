@@ -87,6 +87,19 @@ test("however long the answer takes, no change to the beginning is laid over wha
   expect(heard).toEqual([["frame", NOON + 50]]);
 });
 
+test("a server that goes on without a whole frame is asked again, and not with each word of it", () => {
+  Line.last.opens();
+  Line.last.says("frame", NOON);
+  for (let second = 0; second < 5; second += 1) {
+    Line.last.says("heartbeat", NOON + 50);
+    Line.last.says("delta", NOON + 50);
+    vi.advanceTimersByTime(1000);
+  }
+  expect(Line.last.said.slice(2)).toEqual([{ seek: NOON + 50 }, { seek: NOON + 50 }]);
+  Line.last.says("frame", NOON + 50);
+  expect(heard).toEqual([["frame", NOON + 50]]);
+});
+
 test("what was on its way when a moment was sought tells no time, nor does a heartbeat of that moment", () => {
   Line.last.opens();
   Line.last.says("frame", NOON + 50);

@@ -1,4 +1,4 @@
-import { answers, isOverdue, type Sought } from "../domain/seeking";
+import { ANSWERED_WITHIN_MS, answers, isOverdue, type Sought } from "../domain/seeking";
 import { ReconnectingSource, socketAddress, type Told } from "./reconnecting";
 
 export interface ReplayFrom {
@@ -18,6 +18,8 @@ export class ReplaySource extends ReconnectingSource {
   private sought: Sought | null = null;
   /** A server begins with the beginning, before it has heard what is sought: nobody has asked for that. */
   private opening = false;
+  /** When it was last told where to go, on the local monotonic clock (ms). */
+  private toldMs = 0;
 
   constructor(incident: string, { begin, at, to, speed, paused }: ReplayFrom) {
     super(() => {
@@ -30,7 +32,7 @@ export class ReplaySource extends ReconnectingSource {
   seek(t: number): void {
     this.at.t = t;
     this.sought = { t, localMs: performance.now() };
-    this.send({ seek: t });
+    this.tell();
   }
 
   setSpeed(speed: number): void {
@@ -51,9 +53,13 @@ export class ReplaySource extends ReconnectingSource {
     this.seek(this.at.t);
   }
 
-  /** A picture begins with a whole frame: a change to another one, laid over what is shown, would show neither. */
+  /**
+   * A picture begins with a whole frame: a change to another one, laid over what is shown, would show neither.
+   * A server that goes on without one is asked again, or nothing would ever be shown.
+   */
   protected override concerns(type: Told["type"], t: number): boolean {
     this.opening &&= type !== "frame" || !this.isAnswer(type, t);
+    if (this.opening && performance.now() - this.toldMs > ANSWERED_WITHIN_MS) this.tell();
     return !this.opening;
   }
 
@@ -62,6 +68,11 @@ export class ReplaySource extends ReconnectingSource {
     this.sought = null;
     this.at.t = t;
     return t;
+  }
+
+  private tell(): void {
+    this.toldMs = performance.now();
+    this.send({ seek: this.at.t });
   }
 
   /** A heartbeat is no answer to a seek: it tells where the replay is, and the picture may be of where it was. */
