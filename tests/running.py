@@ -16,7 +16,8 @@ from typing import Self
 
 import httpx2
 
-READY_WITHIN_S = 60.0
+READY_WITHIN_S = 120.0
+"""A worker takes 5 s of a processor to begin: on one that many share, most of a minute."""
 ANSWERED_WITHIN_S = 70.0
 """The server answers within 60 s, with a refusal if need be."""
 
