@@ -83,6 +83,11 @@ class Rival(msgspec.Struct, frozen=True, array_like=True):
         """Probability that the unit is no good."""
         return 1.0 / (1.0 + math.exp(-self.odds))
 
+    @property
+    def counts(self) -> bool:
+        """Whether it is so likely that it is told of."""
+        return self.share >= LEAST_SHARE
+
     def place(self, t: float) -> tuple[Array, Array]:
         """Where he is at an epoch `t` (s): east, north, 2 (m), and their covariance, 2 × 2 (m²)."""
         state, covariance = gone_on(np.array(self.state), full(np.array(self.covariance)), t - self.t)
@@ -95,20 +100,28 @@ class Rival(msgspec.Struct, frozen=True, array_like=True):
             place_m: where he is shown: east, north (m).
             t: at which epoch (s).
         """
-        if self.share < LEAST_SHARE:
+        if not self.counts:
             return np.zeros((2, 2))
         there_m, unsure = self.place(t)
         off = there_m - place_m
         return np.asarray(self.share * (unsure + np.outer(off, off)))
 
 
-def odds_of(links: tuple[Link, ...], t: float) -> float:
-    """Log odds that a unit is no good, at an epoch (s).
+@njit(cache=True)
+def odds_of(links: Array, t: float) -> float:
+    """Log odds that a unit is no good.
 
     The link that tells most of it does not count: a breadcrumb that was kicked contradicts any way.
+
+    Args:
+        links: what each tells, see `Link`, k × 3.
+        t: at which epoch (s).
     """
-    told = [link.gain * math.exp((link.t - t) / MEMORY_S) for link in links]
-    return RARE + max(sum(told) - max([*told, 0.0]), LEAST_ALL)
+    total, most = 0.0, 0.0
+    for number in range(len(links)):
+        told = links[number, 2] * math.exp((links[number, 1] - t) / MEMORY_S)
+        total, most = total + told, max(most, told)
+    return RARE + max(total - most, LEAST_ALL)
 
 
 @njit(cache=True)

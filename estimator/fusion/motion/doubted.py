@@ -6,24 +6,22 @@ radio that is not on him.
 """
 
 import math
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from msgspec.structs import replace
 
-from estimator.fusion.learned import rival as rivals
 from estimator.fusion.learned.rival import Link, Rival
+from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import SILENT_S
-from estimator.fusion.rows.foretold import foretell
+from estimator.fusion.rows.followed import NONE, TELLS, followed
+from estimator.fusion.rows.rows import KIND
 from estimator.graph.dense import Array
 
 CLEAR = 4.0
 """Log odds from which on it is said that ranges contradict a unit: 50 to 1."""
-AGAIN_S = 5.0
-"""As long as its unit is believed a rival follows it within so many seconds: it was right until now."""
-CALM, STIRRED = -5.0, -1.0
-"""Log odds between which a rival goes its own way more and more."""
 
 
 def compare(state: FusionState, table: Array, epochs: Array) -> None:
@@ -34,27 +32,25 @@ def compare(state: FusionState, table: Array, epochs: Array) -> None:
         table: of the tick's readings, see `rows.Row`.
         epochs: theirs, m (s).
     """
-    graph = state.graph
     units = [node for node in state.nodes.values() if node.mode == "unit"]
-    if not units or not len(table):
+    if not units or not (table[:, KIND] == RANGE).any():
         return
-    starts = np.array([graph.starts[node.position] for node in units], dtype=np.intp)
-    told, own = foretell(table, epochs, starts, graph.information, graph.reference)
-    if not len(told):
+    asked = [_asked(node) for node in units]
+    # Where nobody is asked about there is something to do only for who was.
+    if not any(asked) and all(node.rival is None for node in units):
         return
-    for i, node in enumerate(units):
-        if not _asked(node):
-            if node.rival is not None:
-                state.nodes[node.node] = replace(node, rival=None)
+    heard, rivals = _followed(state, units, asked, table, epochs)
+    if not heard:
+        return
+    for node, is_asked, rival in zip(units, asked, rivals, strict=True):
+        if not is_asked and node.rival is not None:
+            state.nodes[node.node] = replace(node, rival=None)
+        if rival is None:
             continue
-        mine = told[told[:, rivals.UNIT] == i]
-        if len(mine):
-            place_m = graph.reference[starts[i] : starts[i] + 2]
-            found = _followed(node, mine, place_m, _covariance(*own[i].tolist()))
-            state.nodes[node.node] = replace(node, rival=found)
-            if found.odds > CLEAR and (node.rival is None or node.rival.odds <= CLEAR):
-                text = f"ranges contradict the unit of {node.node}: it may be worn wrongly, or by another"
-                state.say("outlier", node.pose_t, node.node, text)
+        state.nodes[node.node] = replace(node, rival=rival)
+        if rival.odds > CLEAR and (node.rival is None or node.rival.odds <= CLEAR):
+            text = f"ranges contradict the unit of {node.node}: it may be worn wrongly, or by another"
+            state.say("outlier", node.pose_t, node.node, text)
 
 
 def _asked(node: NodeState) -> bool:
@@ -64,54 +60,39 @@ def _asked(node: NodeState) -> bool:
     return node.pose_t <= node.unit_t + SILENT_S
 
 
-def _covariance(east: float, north: float, both: float) -> Array:
-    """Of a place, from the variances of east, of north and of their sum, 2 × 2 (m²)."""
-    across = 0.5 * (both - east - north)
-    return np.array([[east, across], [across, north]])
+def _followed(
+    state: FusionState, units: Sequence[NodeState], asked: Sequence[bool], table: Array, epochs: Array
+) -> tuple[bool, list[Rival | None]]:
+    """Whether a tick's ranges may tell of any unit, and the rivals of those of which they do."""
+    starts = [state.graph.starts[node.position] for node in units]
+    pose_t = [node.pose_t if is_asked else math.nan for node, is_asked in zip(units, asked, strict=True)]
+    rivals = [NONE if (r := node.rival) is None else (r.t, *r.state, *r.covariance, r.odds) for node in units]
+    links = [
+        number
+        for i, node in enumerate(units)
+        if node.rival is not None
+        for link in node.rival.links
+        for number in (i, link.number, link.t, link.gain)
+    ]
+    heard, found, tell = followed(
+        table,
+        epochs,
+        np.array(starts, dtype=np.intp),
+        np.array(pose_t),
+        np.array(rivals),
+        np.array(links, dtype=np.float64).reshape(-1, TELLS),
+        state.graph.storage()[0],
+        state.graph.reference,
+    )
+    return heard, list(_rivals(found, tell))
 
 
-def _followed(node: NodeState, told: Array, place_m: Array, own: Array) -> Rival:
-    """A unit's rival after more ranges.
-
-    Args:
-        node: the unit's.
-        told: the ranges, see `rivals.TOLD`.
-        place_m: where its bearer is by the unit: east, north (m).
-        own: covariance of that, 2 × 2 (m²).
-    """
-    old = node.rival
-    if old is None:
-        begun_t = min(float(told[0, rivals.EPOCH]), node.pose_t)
-        covariance = np.eye(4)
-        covariance[:2, :2] = own
-        links: tuple[Link, ...] = ()
-        x, upper = np.array([*place_m.tolist(), 0.0, 0.0]), rivals.upper_of(covariance)
-    else:
-        begun_t, links = old.t, old.links
-        x, upper = np.array(old.state), np.array(old.covariance)
-    gains = np.empty(len(told))
-    x, covariance, t = rivals.follow(x, upper, begun_t, told, gains)
-    until = max(t, node.pose_t)
-    links = _links(links, told, gains)
-    odds = rivals.odds_of(links, until)
-    believed = min(max((STIRRED - odds) / (STIRRED - CALM), 0.0), 1.0)
-    share = believed * -math.expm1((begun_t - until) / AGAIN_S)
-    x, upper = rivals.drawn(x, covariance, until - t, place_m, own, share)
-    return Rival(until, tuple(x.tolist()), tuple(upper.tolist()), links, odds)
-
-
-def _links(known: tuple[Link, ...], told: Array, gains: Array) -> tuple[Link, ...]:
-    """What each link tells with more ranges, of those that have told anything lately."""
-    links = {link.number: link for link in known}
-    for number, t, gain in zip(
-        told[:, rivals.LINK].astype(int).tolist(), told[:, rivals.EPOCH].tolist(), gains.tolist(), strict=True
-    ):
-        before = links.get(number)
-        kept, tells = 0.0, 1.0
-        if before is not None:
-            waited_s = max(t - before.t, 0.0)
-            kept = before.gain * math.exp(-waited_s / rivals.MEMORY_S)
-            tells = min(waited_s / rivals.SPELL_S, 1.0)
-        links[number] = Link(number, t, min(max(kept + tells * gain, rivals.LEAST), rivals.MOST))
-    newest_t = float(told[-1, rivals.EPOCH])
-    return tuple(links[n] for n in sorted(links) if links[n].t > newest_t - rivals.MEMORY_S)
+def _rivals(found: Array, tell: Array) -> Iterator[Rival | None]:
+    """The rivals that rows of `followed` are of; None: no range tells of the unit."""
+    links: dict[float, list[Link]] = {}
+    for unit, number, t, gain in tell.tolist():
+        links.setdefault(unit, []).append(Link(int(number), t, gain))
+    for unit, (until_t, *numbers, odds) in enumerate(found.tolist()):
+        told = tuple(links.get(unit, ()))
+        untold = math.isnan(until_t)
+        yield None if untold else Rival(until_t, tuple(numbers[:4]), tuple(numbers[4:]), told, odds)

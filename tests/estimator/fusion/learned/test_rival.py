@@ -68,7 +68,11 @@ def test_who_foretells_a_range_gains_by_it() -> None:
 def known(*gains: float) -> Rival:
     links = tuple(Link(i, 10.0, gain) for i, gain in enumerate(gains))
     upper = tuple(rival.upper_of(np.eye(4)).tolist())
-    return Rival(10.0, (4.0, 0.0, 0.0, 0.0), upper, links, rival.odds_of(links, 10.0))
+    return Rival(10.0, (4.0, 0.0, 0.0, 0.0), upper, links, rival.odds_of(numbers(links), 10.0))
+
+
+def numbers(links: tuple[Link, ...]) -> Array:
+    return np.array([(link.number, link.t, link.gain) for link in links]).reshape(-1, 3)
 
 
 def test_one_link_alone_tells_nothing_of_a_unit() -> None:
@@ -78,7 +82,7 @@ def test_one_link_alone_tells_nothing_of_a_unit() -> None:
 
 def test_what_links_have_told_is_forgotten() -> None:
     found = known(4.0, 4.0, 4.0)
-    assert rival.odds_of(found.links, 10.0 + 3.0 * rival.MEMORY_S) < rival.RARE + 1.0
+    assert rival.odds_of(numbers(found.links), 10.0 + 3.0 * rival.MEMORY_S) < rival.RARE + 1.0
 
 
 def test_the_covariance_holds_a_rival_as_far_as_it_is_likely() -> None:
