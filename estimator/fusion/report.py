@@ -33,8 +33,23 @@ def covariance_of(state: FusionState) -> Array:
             variance = float(found[row, row])
             factor = doubt(known, float(graph.reference[row]), variance)
             if factor * variance > NOTHING:
-                found += factor * np.outer(found[:, row], found[:, row])
+                widen(found, row, factor)
     return found
+
+
+@njit(cache=True)
+def widen(covariance: Array, row: int, factor: float) -> None:
+    """Let what depends on a number be as unsure as that is: add its share in everything once more.
+
+    Args:
+        covariance: Σ, n × n, changed.
+        row: of the number.
+        factor: what is added to its variance, as a share of its square.
+    """
+    share, n = covariance[:, row].copy(), len(covariance)
+    for r in range(n):
+        for c in range(n):
+            covariance[r, c] += factor * (share[r] * share[c])
 
 
 def estimates(state: FusionState, covariance: Array) -> list[NodeEstimate]:
@@ -90,7 +105,8 @@ def _estimate(
             retired=node.mode == "retired",
         )
     east, north, up, ee, en, eu, nn, nu, uu = place
-    if node.otherwise or node.rival is not None or node.apart is not None:
+    rival = node.rival is not None and node.rival.counts
+    if rival or node.otherwise or node.apart is not None:
         doubt = elsewhere_m2(node, np.array([east, north]))
         ee, en, nn = ee + float(doubt[0, 0]), en + float(doubt[0, 1]), nn + float(doubt[1, 1])
     uu = max(uu, node.doubt_up_m2)
