@@ -2,25 +2,26 @@
 
 import numpy as np
 
-from estimator.fusion.entering.modes import Sought, costs_of, find_modes
+from estimator.fusion.entering.modes import Sought, costs_of, find_modes, short_costs
 from estimator.fusion.learned.gyros import prior_sigma_radps
 from estimator.fusion.learned.links import NEW
-from estimator.fusion.learned.rival import TOLD, drawn, follow, upper_of
+from estimator.fusion.learned.noise import single_sigma
+from estimator.fusion.learned.rival import full, gone_on
 from estimator.fusion.memory.ledger import COLUMNS
 from estimator.fusion.motion.free import free_motion
-from estimator.fusion.motion.silence import unheard_m2
+from estimator.fusion.motion.silence import unheard_m2, went_on
 from estimator.fusion.motion.swings import swung_m2
 from estimator.fusion.motion.units import walk
 from estimator.fusion.motion.way import End, offset
 from estimator.fusion.readings.crossings import crossings_in
 from estimator.fusion.readings.echoes import tell as tell_echoes
 from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
-from estimator.fusion.report import shown
-from estimator.fusion.rows.foretold import foretell
+from estimator.fusion.report import shown, widen
+from estimator.fusion.rows import followed
 from estimator.fusion.rows.rows import FIELDS, ONE
 from estimator.fusion.update import take_in
 from estimator.graph.dense import factorise, inverse
-from estimator.graph.kernels import eliminate, selected_inverse, substitute, take_off
+from estimator.graph.kernels import carry, eliminate, selected_inverse, substitute, take_off
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
 from estimator.graph.scatter import add_motion, add_part, couple, localise, scatter_rows
@@ -40,6 +41,7 @@ from estimator.smoothing.keyframes.ends import Ground, Nodes, Table, place_ends
 from estimator.smoothing.keyframes.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
 from estimator.smoothing.keyframes.ways import Way, ways_of
 from estimator.smoothing.learning.learn import noise_scores
+from estimator.smoothing.learning.scores import through
 from estimator.smoothing.learning.slips import gains, unsure
 from estimator.smoothing.problem.turned import change_pairs, moved_from, turn_between, turning
 from estimator.smoothing.readings.arranged import scattered, sigmas
@@ -76,7 +78,8 @@ def warm_up() -> None:
     sift(unwatched(), np.zeros((0, 6)), np.zeros((2, 6)), 0, 0.01)
     predict_bearing(place, place, one)
     wrap(one)
-    weigh(one, one, one, *strided)
+    for noise in (strided, strided.copy()):
+        weigh(one, one, one, *noise)
     mixture_cost(one, one, *strided)
     cauchy_cost(one, 1.0)
     for noise in (strided, strided.copy()):
@@ -109,6 +112,7 @@ def _warm_chain() -> None:
     add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)
     eliminate(0, k, diagonal, link, wide)
     take_off(0, k, wide, corner.copy(), rest.copy())
+    carry(diagonal, link, wide, np.zeros((k, n, 2))[:, :, ::2], np.zeros((s, 1)))
     substitute(diagonal, link, wide, rest, np.zeros((k, n)))
     add_part(slab, corner, rest, corner, rest)
     selected_inverse(diagonal, link, wide, corner, np.zeros((k, 1, n, n)), np.zeros((k - 1, 1, n, n)))
@@ -131,7 +135,11 @@ def _warm_chain() -> None:
     stretch(readings, x, no, True, no, one, one, one)
     excess(slab, one, one)
     once_a_second(one, slab, one)
-    costs_of(one, one, place, no, one)
+    for alike in (one, np.ones((2, 2))[:, 0]):
+        costs_of(one, one, place, no, alike)
+    short_costs(one, one)
+    nowhere = np.full((1, 2), -1)
+    through(np.zeros((1, 2)), n, n, columns, slab, np.zeros((1, ANY)), one, nowhere, nowhere)
     ask(slab, heard, 0, 0, one, one, 0.0)
     descended(
         Ranged(place[:, :2].copy(), one, one, one, place), place[:, :2].copy(), True, np.zeros(3), np.eye(3)
@@ -156,6 +164,8 @@ def _warm_filter() -> None:
     inverted(graph.storage()[0], np.eye(3))
     swung_m2(np.zeros((1, 2, 1)), np.ones(1))
     unheard_m2(1.0, 0.0)
+    went_on(1.0)
+    single_sigma(1.0, 1.0, 1.0)
     free_motion("responder", 1.0)
     prior_sigma_radps(0.0, 0.0, np.ones((1, 2)))
     table = np.full((1, FIELDS), 0.5)
@@ -171,9 +181,11 @@ def _warm_filter() -> None:
     offset(ends[0], marks, graph.reference, 0.0)
     technology = np.zeros((1, len(Technology._fields)))
     pair_rows(np.zeros((1, PAIR)), technology, ends, marks, newest, graph.reference)
-    foretell(table, np.zeros(1), none, graph.information, graph.reference)
-    follow(np.zeros(4), upper_of(np.eye(4)), 0.0, np.ones((1, TOLD)), np.zeros(1))
-    drawn(np.zeros(4), np.eye(4), 0.0, np.zeros(2), np.eye(2), 0.5)
+    known, links = np.array([followed.NONE]), np.zeros((0, followed.TELLS))
+    place = (graph.storage()[0], graph.reference)
+    followed.followed(table, np.zeros(1), np.zeros(1, dtype=np.intp), np.zeros(1), known, links, *place)
+    gone_on(np.zeros(4), full(np.ones(10)), 1.0)
+    widen(graph.covariance(), 0, 1.0)
 
 
 if __name__ == "__main__":
