@@ -33,6 +33,8 @@ def joined(state: FusionState, readings: Sequence[Displacement]) -> list[Displac
     if len(readings) < 2:
         return list(readings)
     ordered = sorted(readings, key=_whose)
+    if len({_whose(reading) for reading in ordered}) == len(ordered):
+        return ordered
     found = []
     for _, same in groupby(ordered, key=_whose):
         first, *others = same
