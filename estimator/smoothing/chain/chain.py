@@ -34,6 +34,18 @@ class Remainder(NamedTuple):
     vector: Array
 
 
+class Explained(NamedTuple):
+    """What the unknowns take up of new ones, whose right sides are R.
+
+    Attributes:
+        information: Rᵀ L⁻¹ R, c × c.
+        score: Rᵀ L⁻¹ g, c, by what is left of the gradient g: nil where the solution is at rest.
+    """
+
+    information: Array
+    score: Array
+
+
 class Chain:
     """Normal matrix and gradient of a chain, to be filled and then solved once.
 
@@ -154,21 +166,24 @@ class Chain:
             found[:, strand.group.columns] = y
         return found, fixed
 
-    def explained(self, right: Array, corner: Array) -> Array:
-        """Rᵀ L⁻¹ R of right sides R, c × c, after `reduce`: what the unknowns take up of new ones.
+    def explained(self, right: Array, corner: Array) -> Explained:
+        """What the unknowns take up of new ones, whose right sides are R, after `reduce`.
 
         Args:
             right: of the keyframes, k × n × c.
             corner: of the border, s × c.
         """
         rest, found = corner.copy(), np.zeros((corner.shape[1], corner.shape[1]))
+        pulled, (_, gradient) = np.zeros(corner.shape[1]), self._corner()
         for strand in self.strands:
             y, own = right[:, strand.group.columns], np.zeros((len(strand.group.lasting), corner.shape[1]))
             strand.forth(y, own)
             rest[strand.group.lasting] += own
             flat = y.reshape(-1, corner.shape[1])
             found += flat.T @ flat
-        return np.asarray(found + rest.T @ solve(self._cholesky, rest))
+            pulled += flat.T @ strand.gradient.ravel()
+        across = solve(self._cholesky, rest)
+        return Explained(found + rest.T @ across, pulled + across.T @ gradient)
 
     def covariances(self) -> tuple[Array, Array, Array]:
         """After `reduce` or `solve`: covariances of the walks and of the border.

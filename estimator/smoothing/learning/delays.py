@@ -2,8 +2,10 @@
 
 The map bends until their ranges fit: none of them need stand out. What stands out is the score, all residuals
 of a radio together, held against what they would vary by were it like all others (Rao's test; Engle, Wald,
-likelihood ratio, and Lagrange multiplier tests in econometrics, 1984). With the weights by which outliers
-count less it promises no more than there is to gain (Dempster, Laird, Rubin 1977).
+likelihood ratio, and Lagrange multiplier tests in econometrics, 1984). What the map would take up of it were
+it solved to the end is none of theirs: where anchors stand close together a tenth of a millimetre is more
+than all that tells a delay from a place. With the weights by which outliers count less it promises no more
+than there is to gain (Dempster, Laird, Rubin 1977).
 """
 
 import math
@@ -182,8 +184,8 @@ def _pulling(problem: Problem, solved: Solved, told: Told) -> list[Delay]:
     found = []
     for i, radio in enumerate(asked.tolist()):
         own = slice(2 * i, 2 * i + 2)
-        left = np.diag(told.told[radio]) - taken[own, own]
-        found.append(_judged(told.radios[radio], told.score[radio], left))
+        left = np.diag(told.told[radio]) - taken.information[own, own]
+        found.append(_judged(told.radios[radio], told.score[radio] - taken.score[own], left))
     return [one for one in found if one is not None]
 
 

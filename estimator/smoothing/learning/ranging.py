@@ -96,4 +96,5 @@ def taken(problem: Problem, solved: Solved, at: Indices, root: Array) -> float:
     right = np.zeros((size + layout.border, PROBES))
     probe(right, layout.width, size, rows.columns[at], rows.slab[at], solved.linear.jacobian[at], root)
     of_keyframes = right[:size].reshape(layout.length, layout.width, -1)
-    return float(np.trace(solved.chain.explained(of_keyframes, right[size:]))) / PROBES
+    explained = solved.chain.explained(of_keyframes, right[size:])
+    return float(np.trace(explained.information)) / PROBES

@@ -140,7 +140,7 @@ def test_covariances_and_responses_are_blocks_of_the_dense_inverse(shape: Shape)
     moved, fixed = chain.response(put[:size].reshape(shape.length, width, 2), put[size:])
     assert_alike(np.concatenate([moved.reshape(size, 2), fixed]), inverse @ put, 1e-9)
     taken = chain.explained(put[:size].reshape(shape.length, width, 2), put[size:])
-    assert_alike(taken, put.T @ inverse @ put, 1e-9)
+    assert_alike(taken.information, put.T @ inverse @ put, 1e-9)
 
 
 def test_groups_are_what_direct_readings_couple() -> None:

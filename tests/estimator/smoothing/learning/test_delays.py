@@ -1,0 +1,75 @@
+"""What a solution says of radios that may be off, whose anchors stand close together."""
+
+import math
+
+import numpy as np
+import pytest
+
+from estimator.measurements import AnyReading
+from estimator.measurements.node import Node
+from estimator.measurements.range import Range
+from estimator.smoothing.learning.delays import Delay, delays, doubted
+from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.whole import SLACKS_M
+from tests.estimator.smoothing.windows import fused, problem_of
+
+VEHICLE_M = {
+    "a0": (0.7, 0.9, 0.5),
+    "a1": (2.6, 0.9, 2.0),
+    "a2": (2.6, -0.9, 2.0),
+    "a3": (2.6, -0.9, 0.5),
+}
+SECONDS, SIGMA_M = 120, 0.1
+
+
+def round_the_vehicle(seed: int, delay_m: float) -> list[AnyReading]:
+    """Somebody without PDR walks round a vehicle, twenty metres off; his radio's ranges are all too long."""
+    chance = np.random.default_rng(seed)
+    readings: list[AnyReading] = [
+        Node(t=0.0, node=name, role="anchor", position_m=place) for name, place in VEHICLE_M.items()
+    ]
+    readings.append(Node(t=0.0, node="f", role="responder", position_m=(22.0, 0.0, 1.0), sigma_m=0.5))
+    for second in range(SECONDS):
+        for k, (name, place) in enumerate(VEHICLE_M.items()):
+            t = second + 0.1 + 0.23 * k
+            at_m = 2.0 + 20.0 * math.cos(t / 20.0), 20.0 * math.sin(t / 20.0), 1.0
+            range_m = math.dist(at_m, place) + delay_m + chance.normal(0.0, SIGMA_M)
+            readings.append(Range(t=t, a="f", b=name, range_m=range_m, technology="uwb"))
+    return readings
+
+
+def at_rest(readings: list[AnyReading]) -> tuple[Problem, Solved]:
+    problem = problem_of(fused(readings))
+    begun = problem.solve(problem.layout.start(), SLACKS_M)
+    return problem, problem.solve(begun.x)
+
+
+def told(problem: Problem, solved: Solved, farther_m: float) -> tuple[list[Delay], float]:
+    """What is said with him somewhat farther from the vehicle than he is, and what is left to be gained."""
+    x = solved.x.copy()
+    states = problem.layout.states(x, 0)
+    states[:, :2] *= 1.0 + farther_m / np.hypot(states[:, 0], states[:, 1])[:, None]
+    there = problem.solve(x, iterations=0)
+    there.chain.solve()
+    return delays(problem, there), there.chain.promised
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("farther_m", [-0.002, 0.002])
+def test_what_a_solution_has_left_undone_is_no_delay(seed: int, farther_m: float) -> None:
+    """Two millimetres, at which a window may rest, times 480 ranges are more than all that tells of one."""
+    problem, solved = at_rest(round_the_vehicle(seed, 0.0))
+    rested, _ = told(problem, solved, 0.0)
+    found, undone = told(problem, solved, farther_m)
+    assert undone < 0.1
+    assert not doubted(found)
+    assert {one.radio: round(one.odds) for one in found} == {one.radio: round(one.odds) for one in rested}
+
+
+@pytest.mark.parametrize("farther_m", [-0.002, 0.0, 0.002])
+def test_a_delay_is_the_same_wherever_a_solution_rests(farther_m: float) -> None:
+    problem, solved = at_rest(round_the_vehicle(0, 3.0))
+    (first, *_), _ = told(problem, solved, farther_m)
+    assert first.radio == ("uwb", "f")
+    assert first.bias_m == pytest.approx(3.0, abs=1.0)
