@@ -15,6 +15,7 @@ from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.walks import STATES, Motion
 from estimator.smoothing.learning.delays import doubt_delays
+from estimator.smoothing.learning.ranging import learn_ranging
 from estimator.smoothing.learning.slips import Doubts, admit, doubts_of, find_slips
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
@@ -61,6 +62,7 @@ def learn(
         calibrate(state, problem, solved.x, border)
         if solved.rests:
             doubt_delays(state, problem, solved)
+            state.due = learn_ranging(state, problem, solved) or state.due
     learn_biases(state, problem, solved.x, found)
     return found
 

@@ -32,14 +32,17 @@ def learn_ranging(state: FusionState, problem: Problem, solved: Solved) -> bool:
 
     Args:
         state: takes it.
-        problem: of the whole incident.
+        problem: of a window, or of the whole incident.
         solved: its solution, whose chain has been reduced.
 
     Returns:
         Whether any has been changed: the solution has weighed its readings by another one.
     """
     rows, m = problem.rows, len(problem.rows.pairs)
-    ranges = (rows.pairs[:, 1] == RANGE) & ~rows.through(solved.x)
+    ranges = rows.pairs[:, 1] == RANGE
+    if not ranges.any():
+        return False
+    ranges &= ~rows.through(solved.x)
     changed = False
     for source in np.unique(rows.source[:m][ranges]).tolist():
         name = state.sources[source]
