@@ -183,7 +183,8 @@ def _warm_filter() -> None:
     pair_rows(np.zeros((1, PAIR)), technology, ends, marks, newest, graph.reference)
     known, links = np.array([followed.NONE]), np.zeros((0, followed.TELLS))
     place = (graph.storage()[0], graph.reference)
-    followed.followed(table, np.zeros(1), np.zeros(1, dtype=np.intp), np.zeros(1), known, links, *place)
+    units = (np.zeros(1, dtype=np.intp), np.zeros(1), np.zeros(1, dtype=np.bool_))
+    followed.followed(table, np.zeros(1), *units, known, links, *place)
     gone_on(np.zeros(4), full(np.ones(10)), 1.0)
     widen(graph.covariance(), 0, 1.0)
 

@@ -1,10 +1,10 @@
-"""Somebody's way by ranges alone, the rival of the one that his unit tells: which of both foretells ranges?
+"""Somebody's way by ranges or powers alone, the rival of the one that his unit tells: which foretells better?
 
 A unit that is no good makes outliers of good ranges, and the Kirchhoff state is sure of a wrong place. Its
 rival has a velocity that is forgotten with time, as of who has no unit, and follows the same ranges. How
 likely each range was by either, before it was taken in, tells which is to be believed (Dawid, The prequential
 approach, JRSS A 147, 1984). As long as the unit is believed, its rival is drawn to where it leads
-(interacting multiple models, Blom and Bar-Shalom 1988).
+(interacting multiple models, Blom and Bar-Shalom 1988). Who is not ranged is asked about by powers.
 """
 
 import math
@@ -16,6 +16,8 @@ from numba import njit
 from estimator.fusion import physics
 from estimator.graph.dense import Array
 from estimator.graph.forgotten import ornstein_uhlenbeck
+from estimator.graph.robust import FARTHER
+from estimator.measurements.rssi import ANTENNA_M, DB_PER_NEPER, rssi_slope
 
 SPELL_S = 4.0
 """What stands between two radios stays for as long as one walks through a room (`physics.SHARED_M`): a range
@@ -31,6 +33,11 @@ EXCESS_M = 2.0
 """What an obstructed range is too long by on average: exponentially distributed (decision 0009)."""
 WILD, WILD_M = 0.1, 30.0
 """How many of the bad ranges may be off by anything, too short as well, and by how much."""
+WEAKER_DB, SPREAD_DB = physics.RSSI_NOISE.shift, physics.RSSI_NOISE.spread
+"""The same of a power: by what it is off, and how widely that differs (dB)."""
+POWERS_ALIKE = 2.0
+"""Powers of a link share so much of their errors with those before that they tell a place as if the variance
+of each were so many times as large (decision 0033)."""
 OBSTRUCTED = 0.3
 """So many ranges at most are taken to be obstructed: a unit that is no good makes outliers of most."""
 SPEED_MPS, FORGOTTEN_S = physics.SPEED_SIGMA_MPS["responder"][0], physics.SPEED_MEMORY_S["responder"]
@@ -39,12 +46,13 @@ LONGEST_S = 600.0
 NOTHING = 1e-9
 LEAST_SHARE = 0.01
 """What is less likely is not told of."""
-UNIT, LINK, EPOCH, DISTANCE, SIGMA, REST, EAST, NORTH, UP, OUTLIERS, OFF, UNSURE = range(12)
+UNIT, LINK, EPOCH, READ, SIGMA, REST, EAST, NORTH, UP, OUTLIERS, OFF, UNSURE, EXPONENT = range(13)
 """What is told of each range between a unit's bearer and somebody else: number of the unit; of the link;
 epoch (s); distance (m); sigma of its noise (m); variance by what is not known of the other end and of the
 technology (m²); the other end's place, east, north (m); how much higher the bearer is (m); share of outliers;
-how much longer it is than the unit's way foretells (m), and the variance of that (m²)."""
-TOLD = 12
+how much longer it is than the unit's way foretells (m), and the variance of that (m²); 0. Of a power the same
+in dB: how much weaker it is made by the way, and its path-loss exponent."""
+TOLD = 13
 
 
 class Link(msgspec.Struct, frozen=True, array_like=True):
@@ -70,6 +78,7 @@ class Rival(msgspec.Struct, frozen=True, array_like=True):
         covariance: of these, the upper triangle.
         links: what each link tells.
         odds: log odds that the unit is no good.
+        ranged_t: epoch of the newest range that it followed (s).
     """
 
     t: float
@@ -77,6 +86,7 @@ class Rival(msgspec.Struct, frozen=True, array_like=True):
     covariance: tuple[float, ...]
     links: tuple[Link, ...]
     odds: float
+    ranged_t: float = -math.inf
 
     @property
     def share(self) -> float:
@@ -185,6 +195,27 @@ def likely(off: float, variance: float, outliers: float) -> tuple[float, float]:
 
 
 @njit(cache=True)
+def likely_power(off_db: float, variance: float, outliers: float) -> tuple[float, float]:
+    """The same of a power: what is in the way makes it weaker (`physics.RSSI_NOISE`).
+
+    Args:
+        off_db: measured less foretold (dB).
+        variance: of both (dB²).
+        outliers: share of obstructed powers.
+    """
+    good = (1.0 - outliers) * normal(off_db, variance)
+    weaker = normal(off_db - WEAKER_DB, variance + SPREAD_DB**2)
+    wild = normal(off_db - WEAKER_DB, variance + (FARTHER * SPREAD_DB) ** 2)
+    return good + outliers * ((1.0 - WILD) * weaker + WILD * wild) + 1e-300, good
+
+
+@njit(cache=True)
+def normal(off: float, variance: float) -> float:
+    """Density of a normal distribution."""
+    return math.exp(-0.5 * off * off / variance) / math.sqrt(2.0 * math.pi * variance)
+
+
+@njit(cache=True)
 def follow(x: Array, upper: Array, t: float, told: Array, gains: Array) -> tuple[Array, Array, float]:
     """Let a rival follow ranges, one after the other.
 
@@ -203,22 +234,33 @@ def follow(x: Array, upper: Array, t: float, told: Array, gains: Array) -> tuple
         x, covariance = gone_on(x, covariance, told[r, EPOCH] - t)
         t, outliers, noise = told[r, EPOCH], told[r, OUTLIERS], told[r, SIGMA] ** 2
         east, north = x[0] - told[r, EAST], x[1] - told[r, NORTH]
-        length = math.sqrt(east * east + north * north + told[r, UP] ** 2 + 1e-6)
-        slope = np.array([east / length, north / length, 0.0, 0.0])
+        squared, exponent = east * east + north * north + told[r, UP] ** 2 + 1e-6, told[r, EXPONENT]
+        length = math.sqrt(squared)
+        read, by_m, excess, spread = length, 1.0 / length, EXCESS_M, EXCESS_M
+        if exponent > 0.0:
+            by_m, excess, spread = rssi_slope(squared, exponent), WEAKER_DB, SPREAD_DB
+            read = -0.5 * DB_PER_NEPER * exponent * math.log(squared + ANTENNA_M**2)
+        slope = np.array([east * by_m, north * by_m, 0.0, 0.0])
         across = covariance @ slope
-        # Aside of the line to the radio a place that is unsure makes the distance bend.
-        bent = 0.5 * (covariance[0, 0] + covariance[1, 1]) / max(length, 1.0)
+        # Aside of the line to the radio a place that is unsure makes what is foretold bend.
+        bent = 0.5 * (covariance[0, 0] + covariance[1, 1]) * by_m * min(length, 1.0)
         own = noise + told[r, REST] + bent * bent
-        off, foretold = told[r, DISTANCE] - length, slope @ across
-        by_rival, good = likely(off, foretold + own, outliers)
-        by_unit, _ = likely(told[r, OFF], told[r, UNSURE] + noise, outliers)
+        off, foretold = told[r, READ] - read, slope @ across
+        if exponent > 0.0:
+            by_rival, good = likely_power(off, foretold + own, outliers)
+            by_unit, _ = likely_power(told[r, OFF], told[r, UNSURE] + noise, outliers)
+        else:
+            by_rival, good = likely(off, foretold + own, outliers)
+            by_unit, _ = likely(told[r, OFF], told[r, UNSURE] + noise, outliers)
         gains[r] = math.log(by_rival) - math.log(by_unit)
+        if exponent > 0.0:
+            own += (POWERS_ALIKE - 1.0) * noise
         sure = good / by_rival
-        known, longer = sure / own, (1.0 - sure) * (1.0 - WILD) / (own + EXCESS_M**2)
-        if known + longer < NOTHING:
+        known, odd = sure / own, (1.0 - sure) * (1.0 - WILD) / (own + spread**2)
+        if known + odd < NOTHING:
             continue
-        gain = across / (foretold + 1.0 / (known + longer))
-        x = x + gain * (off - EXCESS_M * longer / (known + longer))
+        gain = across / (foretold + 1.0 / (known + odd))
+        x = x + gain * (off - excess * odd / (known + odd))
         covariance = covariance - np.outer(gain, across)
         covariance = 0.5 * (covariance + covariance.T)
     return x, covariance, t

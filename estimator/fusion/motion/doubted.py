@@ -1,8 +1,8 @@
 """A unit that is no good is doubted: what is told of its bearer holds two ways.
 
-Where ranges speak against the way of a unit and for its rival (`learned.rival`), the covariance holds the
-rival's place by how likely it is. The unit is followed all the same: it may be a clock that is off, or a
-radio that is not on him.
+Where ranges, or powers of who is not ranged, speak against the way of a unit and for its rival
+(`learned.rival`), the covariance holds the rival's place by how likely it is. The unit is followed all the
+same: it may be a clock that is off, or a radio that is not on him.
 """
 
 import math
@@ -11,7 +11,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from msgspec.structs import replace
 
-from estimator.fusion.learned.rival import Link, Rival
+from estimator.fusion import physics
+from estimator.fusion.learned.noise import LearnedNoise
+from estimator.fusion.learned.rival import MEMORY_S, RARE, Link, Rival
 from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -22,10 +24,14 @@ from estimator.graph.dense import Array
 
 CLEAR = 4.0
 """Log odds from which on it is said that ranges contradict a unit: 50 to 1."""
+POWERS = "rssi "
+"""What names of technologies of powers begin with, see `entering.technologies`."""
+SPOKEN = 0.5
+"""So much more than nothing (log odds) speaks against a unit that powers are asked on."""
 
 
 def compare(state: FusionState, table: Array, epochs: Array) -> None:
-    """Ask of a tick's ranges whose ways foretell them, before they are taken in.
+    """Ask of a tick's ranges, or powers, whose ways foretell them, before they are taken in.
 
     Args:
         state: the fusion: takes rivals.
@@ -33,13 +39,16 @@ def compare(state: FusionState, table: Array, epochs: Array) -> None:
         epochs: theirs, m (s).
     """
     units = [node for node in state.nodes.values() if node.mode == "unit"]
-    if not units or not (table[:, KIND] == RANGE).any():
+    if not units or not len(table):
+        return
+    powers = _asked_by_powers(state, units)
+    if not any(powers) and not (table[:, KIND] == RANGE).any():
         return
     asked = [_asked(node) for node in units]
     # Where nobody is asked about there is something to do only for who was.
     if not any(asked) and all(node.rival is None for node in units):
         return
-    heard, rivals = _followed(state, units, asked, table, epochs)
+    heard, rivals = _followed(state, units, asked, powers, table, epochs)
     if not heard:
         return
     for node, is_asked, rival in zip(units, asked, rivals, strict=True):
@@ -49,7 +58,8 @@ def compare(state: FusionState, table: Array, epochs: Array) -> None:
             continue
         state.nodes[node.node] = replace(node, rival=rival)
         if rival.odds > CLEAR and (node.rival is None or node.rival.odds <= CLEAR):
-            text = f"ranges contradict the unit of {node.node}: it may be worn wrongly, or by another"
+            by = "powers" if math.isinf(rival.ranged_t) else "ranges"
+            text = f"{by} contradict the unit of {node.node}: it may be worn wrongly, or by another"
             state.say("outlier", node.pose_t, node.node, text)
 
 
@@ -60,13 +70,53 @@ def _asked(node: NodeState) -> bool:
     return node.pose_t <= node.unit_t + SILENT_S
 
 
+def _asked_by_powers(state: FusionState, units: list[NodeState]) -> list[bool]:
+    """Of which units powers are asked; a rival that only powers told of is forgotten where they are not."""
+    known = [state.noise[name] for name in state.noise if name.startswith(POWERS)]
+    if not known:
+        return [False] * len(units)
+    odd = any(_odd(noise) for noise in known)
+    powers = [_by_powers(node, odd) for node in units]
+    for i, node in enumerate(units):
+        if node.rival is not None and math.isinf(node.rival.ranged_t) and not powers[i]:
+            state.nodes[node.node] = units[i] = replace(node, rival=None)
+    return powers
+
+
+def _odd(noise: LearnedNoise) -> bool:
+    """Whether powers are off by more, or more alike, than was assumed: a bad unit makes them so, or walls."""
+    return noise.factor > 1.0 or noise.shared > physics.SHARED_NOISE
+
+
+def _by_powers(node: NodeState, odd: bool) -> bool:
+    """Whether powers are asked of a unit: nobody has ranged its bearer lately.
+
+    Args:
+        node: the unit's.
+        odd: see `_odd`: of powers that are as they were assumed to be nothing is to be learned.
+    """
+    known = node.rival
+    if known is None:
+        return odd
+    unranged = node.pose_t > known.ranged_t + MEMORY_S
+    return unranged and (odd or known.odds > RARE + SPOKEN)
+
+
 def _followed(
-    state: FusionState, units: Sequence[NodeState], asked: Sequence[bool], table: Array, epochs: Array
+    state: FusionState,
+    units: Sequence[NodeState],
+    asked: Sequence[bool],
+    powers: Sequence[bool],
+    table: Array,
+    epochs: Array,
 ) -> tuple[bool, list[Rival | None]]:
-    """Whether a tick's ranges may tell of any unit, and the rivals of those of which they do."""
+    """Whether a tick's readings may tell of any unit, and the rivals of those of which they do."""
     starts = [state.graph.starts[node.position] for node in units]
     pose_t = [node.pose_t if is_asked else math.nan for node, is_asked in zip(units, asked, strict=True)]
-    rivals = [NONE if (r := node.rival) is None else (r.t, *r.state, *r.covariance, r.odds) for node in units]
+    rivals = [
+        NONE if (r := node.rival) is None else (r.t, *r.state, *r.covariance, r.odds, r.ranged_t)
+        for node in units
+    ]
     links = [
         number
         for i, node in enumerate(units)
@@ -79,6 +129,7 @@ def _followed(
         epochs,
         np.array(starts, dtype=np.intp),
         np.array(pose_t),
+        np.array(powers),
         np.array(rivals),
         np.array(links, dtype=np.float64).reshape(-1, TELLS),
         state.graph.storage()[0],
@@ -88,11 +139,13 @@ def _followed(
 
 
 def _rivals(found: Array, tell: Array) -> Iterator[Rival | None]:
-    """The rivals that rows of `followed` are of; None: no range tells of the unit."""
+    """The rivals that rows of `followed` are of; None: no reading tells of the unit."""
     links: dict[float, list[Link]] = {}
     for unit, number, t, gain in tell.tolist():
         links.setdefault(unit, []).append(Link(int(number), t, gain))
-    for unit, (until_t, *numbers, odds) in enumerate(found.tolist()):
+    for unit, (until_t, *numbers, odds, ranged_t) in enumerate(found.tolist()):
         told = tuple(links.get(unit, ()))
-        untold = math.isnan(until_t)
-        yield None if untold else Rival(until_t, tuple(numbers[:4]), tuple(numbers[4:]), told, odds)
+        if math.isnan(until_t):
+            yield None
+        else:
+            yield Rival(until_t, tuple(numbers[:4]), tuple(numbers[4:]), told, odds, ranged_t)

@@ -1,13 +1,24 @@
-"""What a tick's ranges make of the rivals of units, compiled as one call: see `learned.rival`."""
+"""What a tick's ranges and powers make of the rivals of units, compiled as one call: see `learned.rival`."""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from estimator.fusion.learned import rival
-from estimator.fusion.learned.rival import EPOCH, LINK, MEMORY_S, UNIT, drawn, follow, odds_of, upper_of
+from estimator.fusion.learned.rival import (
+    EPOCH,
+    EXPONENT,
+    LINK,
+    MEMORY_S,
+    UNIT,
+    drawn,
+    follow,
+    odds_of,
+    upper_of,
+)
 from estimator.fusion.rows.foretold import foretell
 from estimator.graph.dense import Array, Indices
 
@@ -15,9 +26,9 @@ AGAIN_S = 5.0
 """As long as its unit is believed a rival follows it within so many seconds: it was right until now."""
 CALM, STIRRED = -5.0, -1.0
 """Log odds between which a rival goes its own way more and more."""
-T, STATE, COVARIANCE, ODDS = 0, slice(1, 5), slice(5, 15), 15
+T, STATE, COVARIANCE, ODDS, RANGED = 0, slice(1, 5), slice(5, 15), 15, 16
 """Columns of a rival, see `rival.Rival`; without an epoch there is none."""
-WIDTH = 16
+WIDTH = 17
 NONE = (math.nan,) * WIDTH
 OF, NUMBER = 0, slice(1, 4)
 """Columns of what a link tells: number of the unit, and a row as `rival.odds_of` has it."""
@@ -25,11 +36,11 @@ TELLS = 4
 
 
 class Followed(NamedTuple):
-    """Units' rivals after a tick's ranges.
+    """Units' rivals after a tick's ranges and powers.
 
     Attributes:
-        heard: there are ranges that may tell of any unit, asked about or not.
-        rivals: of each unit, units × `WIDTH`; no epoch: no range tells of it.
+        heard: there are readings that may tell of any unit, asked about or not.
+        rivals: of each unit, units × `WIDTH`; no epoch: none tells of it.
         links: what the links of those that have an epoch tell, k × `TELLS`, in order of units and links.
     """
 
@@ -44,48 +55,53 @@ def followed(
     epochs: Array,
     units: Indices,
     pose_t: Array,
+    powers: NDArray[np.bool_],
     rivals: Array,
     links: Array,
     matrix: Array,
     x: Array,
 ) -> Followed:
-    """Let the rivals of units follow a tick's ranges, before these are taken in.
+    """Let the rivals of units follow a tick's ranges and powers, before these are taken in.
 
     Args:
         table: of m readings, see `rows.Row`.
         epochs: theirs, m (s).
         units: where the position of each begins.
         pose_t: epoch that each position refers to (s); NaN: the unit is not asked about.
+        powers: of which units powers are told as well.
         rivals: of each unit until now, units × `WIDTH`.
         links: what their links have told, k × `TELLS`.
         matrix: L, n × n or larger.
         x: the estimate, n.
     """
     n = len(x)
-    told, own = foretell(table, epochs, units, matrix[:n, :n], x)
+    told, own = foretell(table, epochs, units, powers, matrix[:n, :n], x)
     found, tell = np.full((len(units), WIDTH), np.nan), np.empty((len(links) + len(told), TELLS))
     count = 0
     for i in range(len(units)):
         mine = np.flatnonzero(told[:, UNIT] == i)
         if np.isnan(pose_t[i]) or len(mine) == 0:
             continue
-        ranges, gains = told[mine], np.empty(len(mine))
+        readings, gains = told[mine], np.empty(len(mine))
         place_m, unsure = x[units[i] : units[i] + 2].copy(), covariance_of(own[i])
         if np.isnan(rivals[i, T]):
-            t, state, upper = min(ranges[0, EPOCH], pose_t[i]), np.zeros(4), np.eye(4)
+            t, state, upper = min(readings[0, EPOCH], pose_t[i]), np.zeros(4), np.eye(4)
             state[:2], upper[:2, :2] = place_m, unsure
             known = upper_of(upper)
         else:
             t, state, known = rivals[i, T], rivals[i, STATE].copy(), rivals[i, COVARIANCE].copy()
         begun_t = t
-        state, covariance, t = follow(state, known, t, ranges, gains)
+        state, covariance, t = follow(state, known, t, readings, gains)
         until = max(t, pose_t[i])
-        newer = told_by_links(links[np.flatnonzero(links[:, OF] == i)][:, NUMBER], ranges, gains)
+        newer = told_by_links(links[np.flatnonzero(links[:, OF] == i)][:, NUMBER], readings, gains)
         odds = odds_of(newer, until)
         believed = min(max((STIRRED - odds) / (STIRRED - CALM), 0.0), 1.0)
         share = believed * -math.expm1((begun_t - until) / AGAIN_S)
         state, known = drawn(state, covariance, until - t, place_m, unsure, share)
         found[i, T], found[i, STATE], found[i, COVARIANCE], found[i, ODDS] = until, state, known, odds
+        ranged_t = -np.inf if np.isnan(rivals[i, T]) else rivals[i, RANGED]
+        # A power has an exponent, a range has none.
+        found[i, RANGED] = ranged_t if (readings[:, EXPONENT] > 0.0).all() else max(t, ranged_t)
         for row in newer:
             tell[count, OF], tell[count, NUMBER] = i, row
             count += 1
@@ -101,11 +117,11 @@ def covariance_of(own: Array) -> Array:
 
 @njit(cache=True)
 def told_by_links(known: Array, told: Array, gains: Array) -> Array:
-    """What each link tells with more ranges, of those that have told anything lately, in order of links.
+    """What each link tells with more readings, of those that have told anything lately, in order of links.
 
     Args:
         known: what they have told, k × 3, see `rival.odds_of`.
-        told: the ranges, m × `rival.TOLD`, in order of epoch.
+        told: the readings, m × `rival.TOLD`, in order of epoch.
         gains: log likelihood of each by the rival less that by the unit, m.
     """
     count, newest_t = len(known), told[-1, EPOCH]

@@ -1,17 +1,19 @@
-"""What a Kirchhoff state foretells of the ranges of a tick before it takes them in, compiled."""
+"""What a Kirchhoff state foretells of the ranges and powers of a tick before it takes them in, compiled."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from estimator.fusion.learned import rival
 from estimator.fusion.learned.rival import TOLD
-from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.rows.descent import variances
 from estimator.fusion.rows.rows import (
     A_E,
     B_E,
+    EXTRA,
     KIND,
     LINK,
     NOMINAL,
@@ -25,13 +27,18 @@ from estimator.fusion.rows.rows import (
 )
 from estimator.graph.dense import Array, Indices
 from estimator.graph.triangular import factorised
+from estimator.measurements.rssi import rssi_at
 
 NOISIER = 1.5
 """So many times the claimed or assumed sigma at most: what a bad unit has made of it is not to excuse it."""
 
 
+EXPONENT = 7
+"""Which of the numbers that a power depends on is its exponent."""
+
+
 class Foretold(NamedTuple):
-    """Ranges between a unit's bearer and somebody else.
+    """Ranges and powers between a unit's bearer and somebody else.
 
     Attributes:
         told: see `rival.UNIT` and what stands with it, m × `TOLD`, in order of epoch.
@@ -43,13 +50,16 @@ class Foretold(NamedTuple):
 
 
 @njit(cache=True)
-def foretell(table: Array, epochs: Array, units: Indices, matrix: Array, x: Array) -> Foretold:
+def foretell(
+    table: Array, epochs: Array, units: Indices, powers: NDArray[np.bool_], matrix: Array, x: Array
+) -> Foretold:
     """What is foretold of the ranges of units; of those between two units nothing, for either may be bad.
 
     Args:
         table: of m readings, see `rows.Row`.
         epochs: theirs, m (s).
         units: where the position of each begins, ascending or not.
+        powers: of which units powers are told as well.
         matrix: L, n × n, before it takes them in.
         x: the estimate, n.
     """
@@ -59,9 +69,12 @@ def foretell(table: Array, epochs: Array, units: Indices, matrix: Array, x: Arra
         place[units[i]] = i
     chosen, unit = np.zeros(len(table), dtype=np.bool_), np.zeros(len(table), dtype=np.intp)
     for r in range(len(table)):
-        if table[r, KIND] == RANGE and table[r, LINK] >= 0:
+        if (table[r, KIND] == RANGE or table[r, KIND] == RSSI) and table[r, LINK] >= 0:
             a, b = place[int(table[r, A])], place[int(table[r, B])]
-            chosen[r], unit[r] = (a >= 0) != (b >= 0), max(a, b)
+            unit[r] = max(a, b)
+            chosen[r] = (a >= 0) != (b >= 0) and (
+                table[r, KIND] == RANGE or (powers[unit[r]] and table[r, EXTRA] >= 0)
+            )
     some = np.flatnonzero(chosen)
     if len(some) == 0:
         return Foretold(found[:0], own)
@@ -90,9 +103,16 @@ def foretell(table: Array, epochs: Array, units: Indices, matrix: Array, x: Arra
             squared += (here - there) ** 2
             found[k, rival.EAST + axis] = there if axis < 2 else here - there
         found[k, rival.UNIT], found[k, rival.LINK], found[k, rival.EPOCH] = unit[r], rows[k, LINK], epochs[r]
-        # What it would be without the technology's bias and scale, to first order.
-        found[k, rival.DISTANCE] = np.sqrt(squared) + residual[k]
-        found[k, rival.SIGMA] = min(rows[k, SIGMA], NOISIER * rows[k, NOMINAL])
+        # What it would be without the technology's states, to first order.
+        if rows[k, KIND] == RANGE:
+            found[k, rival.READ], found[k, rival.EXPONENT] = np.sqrt(squared) + residual[k], 0.0
+            found[k, rival.SIGMA] = min(rows[k, SIGMA], NOISIER * rows[k, NOMINAL])
+        else:
+            exponent = x[columns[k, EXPONENT]]
+            by_way = rssi_at(-np.inf, squared, 0.0, exponent).predicted
+            found[k, rival.READ], found[k, rival.EXPONENT] = by_way + residual[k], exponent
+            # A bad unit makes all errors alike: powers would be worth nothing.
+            found[k, rival.SIGMA] = rows[k, NOMINAL]
         found[k, rival.OUTLIERS] = min(rows[k, OUTLIERS], rival.OBSTRUCTED)
         found[k, rival.OFF], found[k, rival.UNSURE] = residual[k], all_of_it[k]
     variances(columns, jacobian, factor, unscale, rest)

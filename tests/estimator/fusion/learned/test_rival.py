@@ -1,4 +1,4 @@
-"""The way by ranges alone, beside the one that a unit tells."""
+"""The way by ranges or powers alone, beside the one that a unit tells."""
 
 import math
 
@@ -18,7 +18,14 @@ def told(link: int, t: float, place_m: Array, off_m: float = 0.0, excess_m: floa
     """A range to a radio, measured at a place, which is `off_m` longer than the unit's way foretells."""
     east, north = RADIOS_M[link].tolist()
     distance = math.dist(place_m.tolist(), (east, north)) + excess_m
-    return [0.0, float(link), t, distance, 0.2, 0.0, east, north, 0.0, 0.1, off_m, 0.05]
+    return [0.0, float(link), t, distance, 0.2, 0.0, east, north, 0.0, 0.1, off_m, 0.05, 0.0]
+
+
+def heard(link: int, t: float, place_m: Array, off_db: float = 0.0) -> list[float]:
+    """A power of a radio, heard at a place, `off_db` stronger than the unit's way foretells."""
+    east, north = RADIOS_M[link].tolist()
+    db = -25.0 * math.log10(math.hypot(place_m[0] - east, place_m[1] - north, 0.3))
+    return [0.0, float(link), t, db, 6.0, 1.0, east, north, 0.0, 0.05, off_db, 1.0, 2.5]
 
 
 def test_it_goes_on_as_who_has_no_unit() -> None:
@@ -36,6 +43,28 @@ def test_it_follows_ranges_to_where_they_are_measured() -> None:
     assert t == 10.0
     assert math.dist(found[:2].tolist(), way_m[-1].tolist()) < 0.3
     assert covariance[0, 0] < 0.1
+
+
+def test_it_follows_powers_to_where_they_are_heard() -> None:
+    powers = np.array([heard(i, float(t), np.array([8.0, -6.0])) for t in range(30) for i in range(3)])
+    found, covariance, _ = rival.follow(np.zeros(4), rival.upper_of(np.eye(4)), 0.0, powers, np.empty(90))
+    off_m = found[:2] - (8.0, -6.0)
+    assert np.hypot(*off_m) < 4.0
+    assert off_m @ np.linalg.solve(covariance[:2, :2], off_m) < 4.0
+
+
+def test_who_foretells_a_power_gains_by_it_and_less_than_by_a_range() -> None:
+    gains = np.empty(2)
+    powers = np.array([heard(0, 0.0, np.zeros(2)), heard(1, 0.0, np.zeros(2), off_db=-18.0)])
+    rival.follow(np.zeros(4), rival.upper_of(np.eye(4)), 0.0, powers, gains)
+    assert gains[0] < 0.0
+    assert 1.0 < gains[1] < 5.0
+
+
+def test_a_power_is_too_weak_rather_than_too_strong() -> None:
+    by_weaker, _ = rival.likely_power(-25.0, 36.0, 0.1)
+    by_stronger, _ = rival.likely_power(25.0, 36.0, 0.1)
+    assert by_weaker > 3.0 * by_stronger
 
 
 def test_an_obstructed_range_hardly_pulls_it() -> None:

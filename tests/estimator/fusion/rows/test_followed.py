@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from estimator.fusion.learned import rival
-from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.rows.followed import (
     COVARIANCE,
     NONE,
     NUMBER,
     ODDS,
     OF,
+    RANGED,
     STATE,
     Followed,
     T,
@@ -32,15 +33,20 @@ def ranged(unit: int, link: int, range_m: float = 9.0) -> Row:
     return Row(RANGE, unit, range_m, 0.2, 0.1, 1.5, 3.0, 0.3, BREADCRUMB, TECHNOLOGY, link=link, b_e=5.0)
 
 
+def heard(unit: int, link: int, power_dbm: float = -70.0) -> Row:
+    return Row(
+        RSSI, unit, power_dbm, 40.0, 0.05, -8.0, 12.0, 6.0, BREADCRUMB, TECHNOLOGY, constant=-45.0, link=link
+    )
+
+
 def follow(
     *rows: Row, pose_t: Array = POSE_T, rivals: Array = NOBODY, links: Array | None = None
 ) -> Followed:
     table, known = table_of({}, [], np.array(rows, dtype=np.float64)), np.zeros((0, 4))
     units, known = np.array(UNITS), known if links is None else links
     half = np.random.default_rng(5).normal(0.0, 1.0, (len(X), len(X)))
-    return followed(
-        table, np.full(len(rows), 7.0), units, pose_t, rivals, known, half @ half.T + np.eye(11), X
-    )
+    powers, matrix = np.ones(len(UNITS), dtype=np.bool_), half @ half.T + np.eye(11)
+    return followed(table, np.full(len(rows), 7.0), units, pose_t, powers, rivals, known, matrix, X)
 
 
 def told(*ranges: tuple[int, float]) -> Array:
@@ -95,3 +101,10 @@ def test_links_stand_in_order_and_are_forgotten_once_they_have_long_been_silent(
     known = np.array([[2.0, 0.0, 1.0], [7.0, 15.0, 1.0]])
     found = told_by_links(known, told((9, 25.0), (1, 25.0)), np.array([20.0, -20.0]))
     assert found.tolist() == [[1.0, 25.0, rival.LEAST], [7.0, 15.0, 1.0], [9.0, 25.0, rival.MOST]]
+
+
+def test_it_is_known_when_a_rival_was_last_ranged_however_much_was_heard_since() -> None:
+    silent = follow(heard(UNITS[0], 1)).rivals
+    ranged_at_7 = follow(ranged(UNITS[0], 1), heard(UNITS[0], 2)).rivals
+    later = follow(heard(UNITS[0], 1), pose_t=POSE_T + 1.0, rivals=ranged_at_7).rivals
+    assert (silent[0, RANGED], ranged_at_7[0, RANGED], later[0, RANGED]) == (-math.inf, 7.0, 7.0)

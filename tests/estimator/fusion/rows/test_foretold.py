@@ -3,7 +3,7 @@
 import numpy as np
 
 from estimator.fusion.learned import rival
-from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.rows.foretold import foretell
 from estimator.fusion.rows.rows import Row, columns_of, linearise, table_of
 from estimator.graph.dense import Array
@@ -11,9 +11,19 @@ from estimator.graph.dense import Array
 UNIT, BREADCRUMB, OTHER_UNIT, TECHNOLOGY = 0, 3, 6, 9
 X = np.array([1.0, 2.0, 0.0, 8.0, -3.0, 0.5, 20.0, 0.0, 0.0, 0.2, 0.01])
 
+NONE, ALL = np.array([False]), np.array([True])
+"""Of which units powers are asked."""
+
+WITH_LOSS = np.append(X[:TECHNOLOGY], [3.0, 2.5])
+"""The same, but that what a technology adds is a power (dB) and an exponent."""
+
 
 def ranged(a: int, b: int, link: int = 0) -> Row:
     return Row(RANGE, a, 9.0, 0.2, 0.1, 1.5, 3.0, 0.3, b, TECHNOLOGY, link=link, b_e=5.0)
+
+
+def heard(dbm: float = -70.0) -> Row:
+    return Row(RSSI, UNIT, dbm, 40.0, 0.05, -8.0, 12.0, 6.0, BREADCRUMB, TECHNOLOGY, constant=-45.0, link=0)
 
 
 def table(*rows: Row) -> Array:
@@ -27,7 +37,7 @@ def information() -> Array:
 
 def test_variances_are_those_of_the_covariance() -> None:
     rows, covariance = table(ranged(UNIT, BREADCRUMB)), np.linalg.inv(information())
-    told, own = foretell(rows, np.array([7.0]), np.array([UNIT]), information(), X)
+    told, own = foretell(rows, np.array([7.0]), np.array([UNIT]), NONE, information(), X)
     columns, jacobian, residual = columns_of(rows), np.empty((1, 8)), np.empty(1)
     linearise(rows, columns, X, jacobian, residual)
     slope = np.zeros(len(X))
@@ -43,18 +53,41 @@ def test_variances_are_those_of_the_covariance() -> None:
 
 def test_it_is_told_from_the_other_end_whichever_that_is() -> None:
     for row in (ranged(UNIT, BREADCRUMB)._replace(b_e=0.0), ranged(BREADCRUMB, UNIT)._replace(b_e=0.0)):
-        told, _ = foretell(table(row), np.array([7.0]), np.array([UNIT]), information(), X)
+        told, _ = foretell(table(row), np.array([7.0]), np.array([UNIT]), NONE, information(), X)
         np.testing.assert_allclose(told[0, [rival.EAST, rival.NORTH, rival.UP]], [8.0, -3.0, -0.5])
 
 
 def test_of_ranges_between_two_units_and_of_none_nothing_is_told() -> None:
     rows = table(ranged(UNIT, OTHER_UNIT), ranged(-1, BREADCRUMB), ranged(UNIT, BREADCRUMB, link=-1))
-    told, _ = foretell(rows, np.arange(3.0), np.array([UNIT, OTHER_UNIT]), information(), X)
+    told, _ = foretell(
+        rows, np.arange(3.0), np.array([UNIT, OTHER_UNIT]), np.repeat(NONE, 2), information(), X
+    )
     assert not len(told)
 
 
 def test_ranges_come_in_order_of_epoch_each_with_its_unit() -> None:
     rows = table(ranged(UNIT, BREADCRUMB, 1), ranged(BREADCRUMB, OTHER_UNIT, 2), ranged(UNIT, -1, 3))
-    told, _ = foretell(rows, np.array([3.0, 1.0, 2.0]), np.array([UNIT, OTHER_UNIT]), information(), X)
+    told, _ = foretell(
+        rows, np.array([3.0, 1.0, 2.0]), np.array([UNIT, OTHER_UNIT]), np.repeat(NONE, 2), information(), X
+    )
     assert told[:, rival.LINK].tolist() == [2.0, 3.0, 1.0]
     assert told[:, rival.UNIT].tolist() == [1.0, 0.0, 0.0]
+
+
+def test_of_powers_it_is_told_only_where_they_are_asked() -> None:
+    rows = table(heard(), ranged(UNIT, BREADCRUMB, 1))
+    asked, _ = foretell(rows, np.zeros(2), np.array([UNIT]), ALL, information(), WITH_LOSS)
+    others, _ = foretell(rows, np.zeros(2), np.array([UNIT]), NONE, information(), WITH_LOSS)
+    assert asked[:, rival.EXPONENT].tolist() == [2.5, 0.0]
+    assert others[:, rival.EXPONENT].tolist() == [0.0]
+
+
+def test_a_power_is_what_its_way_makes_of_it_without_what_was_sent() -> None:
+    told, _ = foretell(table(heard()), np.zeros(1), np.array([UNIT]), ALL, information(), WITH_LOSS)
+    sent_dbm = -45.0 + WITH_LOSS[TECHNOLOGY]
+    np.testing.assert_allclose(told[0, rival.READ], -70.0 - sent_dbm)
+
+
+def test_a_power_is_as_noisy_as_was_assumed_however_alike_a_bad_unit_has_made_them() -> None:
+    told, _ = foretell(table(heard()), np.zeros(1), np.array([UNIT]), ALL, information(), WITH_LOSS)
+    assert told[0, rival.SIGMA] == 6.0
