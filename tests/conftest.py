@@ -10,6 +10,7 @@ import pytest
 import sqlalchemy as sa
 
 from tests.needs import missing
+from tests.running import Post, Server, running
 
 # The gate tries the same examples each time: it speaks of the change, not of luck. At a desk they vary.
 hypothesis.settings.register_profile("gate", derandomize=True, deadline=None)
@@ -26,6 +27,21 @@ def shared_data() -> Path:
     if not folder.is_dir():
         missing(f"the data folder {folder}", "put it there or set FIRETHREAD_SHARED_DATA")
     return folder
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server that the tests of a module share, each with incidents of its own."""
+    with running(tmp_path_factory.mktemp("server") / "data") as server:
+        yield server.until_it_computes()
+
+
+@pytest.fixture(scope="module")
+def post(server: Server) -> Iterator[Post]:
+    """The command post or gateway that speaks to the shared server."""
+    post = Post(server.url)
+    yield post
+    post.http.close()
 
 
 @pytest.fixture

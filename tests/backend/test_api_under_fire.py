@@ -1,6 +1,5 @@
 """The whole API under generated requests: no defect, and every refusal in the contract's form."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,14 +17,6 @@ schema = schemathesis.openapi.from_path(DOCUMENT)
 
 # JSON Schema cannot say that two fields must agree; and a batch with bad readings is taken, by contract.
 BEYOND_A_SCHEMA = (negative_data_rejection, positive_data_acceptance)
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """A real server: what is generated travels through its real parser and limits."""
-    started = Server(tmp_path_factory.mktemp("fire") / "data").start()
-    yield started
-    started.stop()
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from playwright.sync_api import Browser, sync_playwright
 
 from tests.end_to_end.commander import Commander
 from tests.needs import missing
-from tests.running import Post, Server, running
+from tests.running import Post
 
 ROOT = Path(__file__).resolve().parents[2]
 SCREEN = ROOT / "backend" / "screen" / "index.html"
@@ -41,21 +41,6 @@ def browser() -> Iterator[Browser]:
         browser = driver.chromium.launch(executable_path=chromium, args=FLAGS)
         yield browser
         browser.close()
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """A server that the tests of a module share, each with incidents of its own."""
-    with running(tmp_path_factory.mktemp("server") / "data") as server:
-        yield server.until_it_computes()
-
-
-@pytest.fixture
-def post(server: Server) -> Iterator[Post]:
-    """The command post or gateway that speaks to the shared server."""
-    post = Post(server.url)
-    yield post
-    post.http.close()
 
 
 @pytest.fixture

@@ -16,19 +16,6 @@ IDLE_SOCKETS = 1_100
 ROUNDS = 40
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    with running(tmp_path_factory.mktemp("live") / "data") as running_server:
-        yield running_server.until_it_computes()
-
-
-@pytest.fixture
-def post(server: Server) -> Iterator[Post]:
-    made = Post(server.url)
-    yield made
-    made.http.close()
-
-
 def fix(t: float, east_m: float = 1.0, node: str = "ff1") -> dict[str, object]:
     return {"kind": "position", "t": t, "node": node, "position_m": [east_m, 2.0, 0.0], "sigma_m": [1, 1, 1]}
 

@@ -1,29 +1,15 @@
 """The replay socket of a real server."""
 
 import itertools
-from collections.abc import Iterator
 
 import pytest
 from websockets.exceptions import ConnectionClosed
 
 from tests.backend.refusing import assert_refused
-from tests.running import Post, Server, eventually, running
+from tests.running import Post, Server, eventually
 from tests.watching import watching
 
 START_T, SECONDS = 1_000.0, 30
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    with running(tmp_path_factory.mktemp("replay") / "data") as running_server:
-        yield running_server.until_it_computes()
-
-
-@pytest.fixture(scope="module")
-def post(server: Server) -> Iterator[Post]:
-    made = Post(server.url)
-    yield made
-    made.http.close()
 
 
 @pytest.fixture(scope="module")

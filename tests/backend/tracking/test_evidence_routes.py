@@ -1,6 +1,5 @@
 """`evidence` and `advice` of a real server."""
 
-from collections.abc import Iterator
 from functools import partial
 
 import msgspec
@@ -8,23 +7,10 @@ import pytest
 
 from estimator.evidence import Advice, Evidence
 from tests.backend.tracking.conftest import walk
-from tests.running import Post, Server, quickest_s, running
+from tests.running import Post, quickest_s
 
 START_T = 1_000.0
 SECONDS = 12
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    with running(tmp_path_factory.mktemp("evidence") / "data") as running_server:
-        yield running_server
-
-
-@pytest.fixture(scope="module")
-def post(server: Server) -> Iterator[Post]:
-    made = Post(server.url)
-    yield made
-    made.http.close()
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,6 @@
 
 import math
 import time
-from collections.abc import Iterator
 from typing import Any
 
 import msgspec
@@ -14,23 +13,10 @@ from backend.tracking.routes import relative_position
 from estimator.estimate import Relative
 from tests.estimator.inertial.gait import Stride
 from tests.estimator.inertial.gait import walked as boot_walked
-from tests.running import Post, Server, eventually, quickest_s, running
+from tests.running import Post, Server, eventually, quickest_s
 
 START_T = 1_000.0
 SECONDS = 20
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    with running(tmp_path_factory.mktemp("picture") / "data") as running_server:
-        yield running_server
-
-
-@pytest.fixture(scope="module")
-def post(server: Server) -> Iterator[Post]:
-    made = Post(server.url)
-    yield made
-    made.http.close()
 
 
 @pytest.fixture(scope="module")
