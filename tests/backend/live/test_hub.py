@@ -3,7 +3,6 @@
 import asyncio
 import time
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 import sqlalchemy as sa
@@ -17,20 +16,10 @@ from backend.live.hub import Hub
 from backend.live.record import PictureRecord, RecordNode, encode
 from backend.log.base import LoggedBatch, RecordedFrame, Snapshot
 from backend.log.derived import SqlDerivedWriter
-from backend.log.engine import make_engine, writing
+from backend.log.engine import writing
 from backend.log.incidents import IncidentStore
-from backend.log.migrate import prepare
 from backend.log.read import SqlLogReader
 from backend.log.schema import batches, incidents
-
-
-@pytest.fixture
-def engine(tmp_path: Path) -> Iterator[sa.Engine]:
-    url = f"sqlite:///{tmp_path / 'firethread.db'}"
-    prepare(url)
-    engine = make_engine(url)
-    yield engine
-    engine.dispose()
 
 
 @pytest.fixture

@@ -3,8 +3,6 @@
 import asyncio
 import contextlib
 import time
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 import sqlalchemy as sa
@@ -18,15 +16,6 @@ from backend.log.incident import Incident
 from backend.log.incidents import IncidentStore
 from backend.log.migrate import prepare
 from backend.log.read import SqlLogReader
-
-
-@pytest.fixture
-def engine(tmp_path: Path) -> Iterator[sa.Engine]:
-    url = f"sqlite:///{tmp_path / 'firethread.db'}"
-    prepare(url)
-    engine = make_engine(url)
-    yield engine
-    engine.dispose()
 
 
 def record(t: float) -> bytes:
