@@ -3,15 +3,15 @@
 from estimator.fusion import physics
 from estimator.fusion.learned import reach
 from estimator.fusion.learned.calibration import bias_sigma_m
+from estimator.fusion.memory.ledger import UNTOLD_POWER
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.variable import Variable
 
 Numbers = tuple[float, float]
 SENT = "sent"
 """Owner of the path-loss states of radios that tell the power they send with; "" for those that do not."""
-UNTOLD_POWER = "rssi "
 TOLD_POWER = UNTOLD_POWER + SENT
-"""Technologies of signals; the owner of their path-loss states stands after the first."""
+"""Technology of signals that do; the owner of their path-loss states stands last."""
 REACH = UNTOLD_POWER + "reach"
 """How far radios reach, as a law of powers of which a crossing is the reading 0 dBm."""
 

@@ -27,6 +27,8 @@ block."""
 
 RANGE, RSSI, BEARING, BODY_BEARING = range(4)
 """Kinds of pairs; the last two are bearings in the local frame and in the body frame of `a`."""
+UNTOLD_POWER = "rssi "
+"""Technology of signals whose radios do not tell what they send with; names of the others begin with it."""
 ECHO = COLUMNS["pairs"].index("echo")
 GYRO_BIAS = 4
 """Axis of a single that tells a gyro bias."""

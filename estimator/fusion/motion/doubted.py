@@ -14,7 +14,7 @@ from msgspec.structs import replace
 from estimator.fusion import physics
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.learned.rival import MEMORY_S, RARE, Link, Rival
-from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import SILENT_S
@@ -24,8 +24,6 @@ from estimator.graph.dense import Array
 
 CLEAR = 4.0
 """Log odds from which on it is said that ranges contradict a unit: 50 to 1."""
-POWERS = "rssi "
-"""What names of technologies of powers begin with, see `entering.technologies`."""
 SPOKEN = 0.5
 """So much more than nothing (log odds) speaks against a unit that powers are asked on."""
 
@@ -72,7 +70,7 @@ def _asked(node: NodeState) -> bool:
 
 def _asked_by_powers(state: FusionState, units: list[NodeState]) -> list[bool]:
     """Of which units powers are asked; a rival that only powers told of is forgotten where they are not."""
-    known = [state.noise[name] for name in state.noise if name.startswith(POWERS)]
+    known = [state.noise[name] for name in state.noise if name.startswith(UNTOLD_POWER)]
     if not known:
         return [False] * len(units)
     odd = any(_odd(noise) for noise in known)

@@ -9,7 +9,6 @@ from estimator.fusion import physics
 from estimator.fusion.entering.technologies import (
     REACH,
     TOLD_POWER,
-    UNTOLD_POWER,
     path_loss_states,
     technology_states,
 )
@@ -17,7 +16,7 @@ from estimator.fusion.learned import reach
 from estimator.fusion.learned.calibration import Calibration
 from estimator.fusion.learned.delays import source_of
 from estimator.fusion.memory.hearing import Crossing
-from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI
+from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import SILENT_S

@@ -6,7 +6,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from estimator.fusion.entering.technologies import UNTOLD_POWER
+from estimator.fusion.memory.ledger import UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.prior import Key, Prior
 from estimator.fusion.memory.state import FusionState

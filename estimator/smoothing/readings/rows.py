@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.fusion import physics
-from estimator.fusion.entering.technologies import UNTOLD_POWER
 from estimator.fusion.learned.noise import LearnedNoise
-from estimator.fusion.memory.ledger import BEARING, ECHO, RANGE, RSSI
+from estimator.fusion.memory.ledger import BEARING, ECHO, RANGE, RSSI, UNTOLD_POWER
 from estimator.fusion.readings import echoes
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers

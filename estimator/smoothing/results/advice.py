@@ -11,8 +11,7 @@ import numpy as np
 from estimator.evidence import Advice, Suggestion
 from estimator.fusion import physics
 from estimator.fusion.entering.introduce import tuple_of
-from estimator.fusion.entering.technologies import UNTOLD_POWER
-from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.report import covariance_of
