@@ -2,6 +2,7 @@
 
 import asyncio
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import prometheus_client
@@ -33,7 +34,8 @@ class Readiness(BaseModel):
     """What this process needs for its work.
 
     Attributes:
-        log: the database answers, and its disk has room, where it is a file here.
+        log: the database answers, has not refused what was last written, and its disk has room, where it is a
+            file here.
         worker: an estimator worker is connected and ready to compute; it takes seconds to begin. Without one
             telemetry is still taken, and dots go stale.
     """
@@ -42,8 +44,16 @@ class Readiness(BaseModel):
     worker: bool
 
 
-def health_router(engine: sa.Engine, workers: WebLink) -> APIRouter:
-    """The routes of health and metrics; they need no access token."""
+def health_router(
+    engine: sa.Engine, workers: WebLink, refusal: Callable[[], LogUnwritable | None]
+) -> APIRouter:
+    """The routes of health and metrics; they need no access token.
+
+    Args:
+        engine: of the log's database.
+        workers: the link to them.
+        refusal: why the newest batch could not be written, where it could not.
+    """
     router = APIRouter(tags=["health"])
 
     @router.get("/healthz", summary="Is the process alive?")
@@ -61,6 +71,8 @@ def health_router(engine: sa.Engine, workers: WebLink) -> APIRouter:
         if not done:
             raise Unavailable(f"The database has not answered within {ANSWER_WITHIN_S:g} s.")
         asking.result()
+        if (problem := refusal()) is not None:  # a database elsewhere does not tell how full its disk is
+            raise LogUnwritable(problem.detail, retry_after_s=problem.retry_after_s)
         return Readiness(log=True, worker=workers.connected)
 
     @router.get("/metrics", summary="Metrics for Prometheus", response_class=Response)

@@ -96,7 +96,7 @@ def build_app(settings: Settings, *, token: str | None, link: socket.socket, lin
         live_router(hub),
         replay_router(incidents, reader),
         session_router(token),
-        health_router(engine, workers),
+        health_router(engine, workers, lambda: writer.refusal),
     ):
         app.include_router(router)
     openapi.install(app)

@@ -29,6 +29,9 @@ SOCKET_BYTES = 4 * 1024 * 1024
 """Asked of the kernel, which may give less: what the writer finds when it is done with a group is its next
 one, even while the event loop is busy with decoding."""
 
+REFUSAL_TELLS_S = 30.0
+"""For so long a refusal tells that the log cannot be written: whoever is told so may send nothing more."""
+
 RESTART_S = 0.2
 MAX_RESTART_S = 5.0
 STOP_S = 30.0
@@ -67,6 +70,7 @@ class GroupCommit:
         self._link: _Link | None = None
         self._keeper: asyncio.Task[None] | None = None
         self._closing = asyncio.Event()
+        self._refusal: tuple[float, LogUnwritable] | None = None
         _queued.set_function(lambda: self._bytes)
 
     async def start(self) -> None:
@@ -105,6 +109,14 @@ class GroupCommit:
             self._send()
         return await future
 
+    @property
+    def refusal(self) -> LogUnwritable | None:
+        """Why the newest batch could not be written, if that was lately; None where it was, or none came."""
+        if self._refusal is None:
+            return None
+        at, problem = self._refusal
+        return problem if self._loop.time() - at < REFUSAL_TELLS_S else None
+
     async def close(self) -> None:
         """Have what waits written, then stop the writer process; one that hangs is killed."""
         self._closing.set()
@@ -136,6 +148,11 @@ class GroupCommit:
             self._bytes -= size
             if refused is not None:
                 _refused.labels(refused.kind).inc()
+                problem = problem_of(refused)
+                if isinstance(problem, LogUnwritable):
+                    self._refusal = self._loop.time(), problem
+            elif appended is not None and not appended.duplicate:
+                self._refusal = None
             if future.done():  # its request was cancelled
                 continue
             if refused is not None:

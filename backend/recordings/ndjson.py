@@ -86,7 +86,7 @@ def import_log(
         progress: told after each transaction.
 
     Raises:
-        NotUnderstood: a line is no batch; the message names the line.
+        NotUnderstood: a line is no batch, and the message names it; or there is none.
         TooLarge: a line has more readings than a batch may have.
         SchemaTooNew: a newer version has written the database.
         OSError: the file cannot be read.
@@ -95,6 +95,8 @@ def import_log(
     """
     with _readable_twice(path) as (file, said):
         total = sum(1 for _ in batches_in(file, "", clock, said))
+        if total == 0:
+            raise NotUnderstood(f"{said} holds no batch: an export of an incident has a line for each.")
         prepare(url)
         engine = make_engine(url)
         try:

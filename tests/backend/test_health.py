@@ -23,7 +23,7 @@ def test_a_database_that_does_not_answer_makes_the_process_not_ready_in_time(
         engine = make_engine(f"postgresql+psycopg://127.0.0.1:{hangs.getsockname()[1]}/never")
         app = FastAPI()
         problems.install(app)
-        app.include_router(health_router(engine, WebLink(link, "")))
+        app.include_router(health_router(engine, WebLink(link, ""), lambda: None))
         with TestClient(app) as http:
             began = time.monotonic()
             answers = [http.get("/readyz") for _ in range(3)]
@@ -49,7 +49,9 @@ def test_a_disk_without_room_for_telemetry_makes_the_process_not_ready_until_the
         app = FastAPI()
         problems.install(app)
         app.include_router(
-            health_router(make_engine(f"sqlite:///{tmp_path / 'firethread.db'}"), WebLink(link, ""))
+            health_router(
+                make_engine(f"sqlite:///{tmp_path / 'firethread.db'}"), WebLink(link, ""), lambda: None
+            )
         )
         with TestClient(app) as http:
             full = http.get("/readyz")

@@ -8,10 +8,17 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import sqlalchemy as sa
 
 from tests.running import Post, Server, eventually, free_port
 
 SHARED_WORD = "a-word-that-both-share"
+FULL = [
+    """CREATE FUNCTION full_disk() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN
+    RAISE EXCEPTION 'could not extend file: No space left on device' USING ERRCODE = '53100'; END $$""",
+    "CREATE TRIGGER full_disk BEFORE INSERT ON batches FOR EACH ROW EXECUTE FUNCTION full_disk()",
+]
+"""What Postgres answers where its disk is full, without filling it."""
 
 
 @contextlib.contextmanager
@@ -79,6 +86,33 @@ def test_a_worker_without_the_shared_word_is_turned_away(
         assert process.poll() is None
         with pytest.raises(AssertionError):
             eventually(lambda: readiness(server)["worker"], within_s=3.0)
+
+
+def test_a_postgres_whose_disk_is_full_is_told_until_there_is_room_again(
+    apart: tuple[Server, str, str],
+) -> None:
+    server, _, database = apart
+    post = Post(server.url)
+    incident = post.open_incident()
+    walk(post, incident, 0)
+    assert post.http.get(server.url + "/readyz").status_code == 200
+
+    admin = sa.create_engine(database, isolation_level="AUTOCOMMIT")
+    with admin.connect() as connection:
+        for statement in FULL:
+            connection.execute(sa.text(statement))
+    step = {"gateway": "engine-7", "batch": "step-1", "readings": []}
+    refused = post.http.post(f"/incidents/{incident}/telemetry", json=step)
+    unready = post.http.get(server.url + "/readyz")
+    assert (refused.status_code, unready.status_code) == (503, 503)
+    assert "No space left on device" in unready.json()["detail"]
+    assert "retry-after" in unready.headers
+
+    with admin.connect() as connection:
+        connection.execute(sa.text("DROP TRIGGER full_disk ON batches"))
+    admin.dispose()
+    assert post.http.post(f"/incidents/{incident}/telemetry", json=step).status_code == 202
+    assert post.http.get(server.url + "/readyz").status_code == 200
 
 
 def readiness(server: Server) -> dict[str, bool]:

@@ -65,8 +65,11 @@ def test_a_full_disk_loses_nothing_acknowledged_and_needs_no_restart(small_disk:
         assert len(acknowledged) > 20
         assert names() == acknowledged
 
+        told = [writer.refusal is not None]
         ballast.unlink()
         answer = await writer.append(batch("after", body=BODY))
+        told.append(writer.refusal is not None)
+        assert told == [True, False]
         assert answer.seq == len(acknowledged) + 1
         assert names() == [*acknowledged, "after"]
         again = await writer.append(batch("b0", body=BODY))

@@ -125,6 +125,17 @@ def test_of_a_file_with_a_line_that_is_no_batch_nothing_is_stored(
     engine.dispose()
 
 
+def test_a_file_that_holds_nothing_makes_no_incident(database_url: str, tmp_path: Path) -> None:
+    path = tmp_path / "empty.ndjson"
+    path.write_bytes(b"\n")
+    import_log(database_url, "Before", _one_line(tmp_path))
+    with pytest.raises(NotUnderstood, match=r"empty\.ndjson holds no batch"):
+        import_log(database_url, "Drill", path)
+    engine = make_engine(database_url)
+    assert [one.name for one in IncidentStore(engine).all()] == ["Before"]
+    engine.dispose()
+
+
 def _one_line(tmp_path: Path) -> Path:
     path = tmp_path / "one.ndjson"
     path.write_bytes(EXPORTED[0])
