@@ -12,7 +12,7 @@ from estimator.measurements.status import AlarmKind, AlarmState
 Status = Literal["live", "stale", "lost", "retired"]
 
 
-class FrameNode(msgspec.Struct, frozen=True, kw_only=True):
+class FrameNode(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """A node as it is shown.
 
     Attributes:
@@ -35,6 +35,11 @@ class FrameNode(msgspec.Struct, frozen=True, kw_only=True):
         motionless_s: for how long it had not moved at its newest status (s).
         moved: it was noticed to have been moved in the last ten minutes.
         retire_reason: why it has left, where that was said.
+        battery_t: epoch of the status that told it, Unix seconds; a unit may go on without its sensors.
+            Left out where it was never told, as the three below.
+        air_t: the same of `air_bar`.
+        temperature_t: the same of `temperature_c`.
+        motionless_t: the same of `motionless_s`.
     """
 
     node: str
@@ -56,6 +61,10 @@ class FrameNode(msgspec.Struct, frozen=True, kw_only=True):
     motionless_s: float | None
     moved: bool
     retire_reason: str | None
+    battery_t: float | None = None
+    air_t: float | None = None
+    temperature_t: float | None = None
+    motionless_t: float | None = None
 
 
 class FrameAlarm(msgspec.Struct, frozen=True, kw_only=True):

@@ -110,6 +110,10 @@ def present_node(known: RecordNode, now: float, settings: IncidentSettings, floo
         motionless_s=known.motionless_s,
         moved=known.moved_t is not None and now - known.moved_t < MOVED_SHOWN_S,
         retire_reason=known.retire_reason,
+        battery_t=known.battery_t,
+        air_t=known.air_t,
+        temperature_t=known.temperature_t,
+        motionless_t=known.motionless_t,
     )
 
 

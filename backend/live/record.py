@@ -37,6 +37,10 @@ class RecordNode(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
         motionless_s: for how long it had not moved at its newest status (s).
         moved_t: when it was last noticed to have been moved, Unix seconds.
         retire_reason: why it has left, where that was said.
+        battery_t: epoch of the status that told it, Unix seconds; a unit may go on without its sensors.
+        air_t: the same of `air_bar`.
+        temperature_t: the same of `temperature_c`.
+        motionless_t: the same of `motionless_s`.
     """
 
     node: str
@@ -56,6 +60,10 @@ class RecordNode(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     motionless_s: float | None = None
     moved_t: float | None = None
     retire_reason: str | None = None
+    battery_t: float | None = None
+    air_t: float | None = None
+    temperature_t: float | None = None
+    motionless_t: float | None = None
 
 
 class RecordAlarm(msgspec.Struct, frozen=True, kw_only=True, array_like=True):

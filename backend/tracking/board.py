@@ -27,6 +27,7 @@ class NodeBoard(msgspec.Struct):
         temperature_c: temperature (°C).
         motionless_s: for how long it has not moved (s).
         status_t: epoch of the newest status, Unix seconds.
+        told_t: epoch of the newest status that told each of the four, at most when that came, Unix seconds.
         moved_t: when it was last noticed to have been moved, Unix seconds.
     """
 
@@ -39,6 +40,7 @@ class NodeBoard(msgspec.Struct):
     motionless_s: float | None = None
     status_t: float | None = None
     moved_t: float | None = None
+    told_t: dict[str, float] = msgspec.field(default_factory=dict)
 
 
 class Board(msgspec.Struct):
@@ -70,7 +72,7 @@ class Board(msgspec.Struct):
                 self._came(reading, known_t)
             match reading:
                 case Status():
-                    self._told(reading)
+                    self._told(reading, known_t)
                 case Alarm():
                     self._alarmed(reading)
                 case Node():
@@ -114,7 +116,7 @@ class Board(msgspec.Struct):
         if reading.t >= self.retired.get(reading.node, (-math.inf, None))[0]:
             self.retired[reading.node] = reading.t, reading.reason
 
-    def _told(self, reading: Status) -> None:
+    def _told(self, reading: Status, known_t: float) -> None:
         known = self._node(reading.node, reading.t)
         if known.status_t is not None and reading.t < known.status_t:
             return  # came late: a newer one is shown
@@ -123,6 +125,7 @@ class Board(msgspec.Struct):
             value = getattr(reading, name)
             if value is not None:
                 setattr(known, name, value)
+                known.told_t[name] = min(reading.t, known_t)
 
     def _alarmed(self, reading: Alarm) -> None:
         self._node(reading.node, reading.t)
@@ -177,4 +180,8 @@ def _record_of(estimate: NodeEstimate, told: NodeBoard, t: float, retire_reason:
         motionless_s=told.motionless_s,
         moved_t=told.moved_t,
         retire_reason=retire_reason if estimate.retired else None,
+        battery_t=told.told_t.get("battery"),
+        air_t=told.told_t.get("air_bar"),
+        temperature_t=told.told_t.get("temperature_c"),
+        motionless_t=told.told_t.get("motionless_s"),
     )

@@ -27,6 +27,7 @@ class BoardRow:
     age_s: float
     level: str
     error: str
+    air: str
 
 
 class Commander(MapSeen, LayoutSeen, OthersSeen, PastCompared, SignInSeen, DeviceUsed, BoardNoted):
@@ -80,12 +81,12 @@ class Commander(MapSeen, LayoutSeen, OthersSeen, PastCompared, SignInSeen, Devic
             """() => Object.fromEntries([...document.querySelectorAll('[data-testid=responder]')].map(row => {
               const of = (id) => row.querySelector(`[data-testid=${id}]`)?.textContent.trim() ?? '';
               return [row.querySelector('.name').textContent.trim(),
-                      [of('status'), of('age'), of('level'), of('error')]];
+                      [of('status'), of('age'), of('level'), of('error'), of('air')]];
             }))"""
         )
         return {
-            name: BoardRow(status, _seconds(age), level, error)
-            for name, (status, age, level, error) in rows.items()
+            name: BoardRow(status, _seconds(age), level, error, air)
+            for name, (status, age, level, error, air) in rows.items()
         }
 
     @property

@@ -59,6 +59,18 @@ class DeviceUsed:
         self.page.route_web_socket(re.compile("/live"), told)
         return let_through
 
+    def may_lose_the_sound(self) -> None:
+        """From the next page on the system can take the sound away, as a call or a lock screen does."""
+        self.page.add_init_script(
+            """window.AudioContext = class extends AudioContext {
+              constructor() { super(); window.theSound = this; }
+            };"""
+        )
+
+    def loses_the_sound(self) -> None:
+        """Have the system take it away."""
+        self.page.evaluate("window.theSound.suspend()")
+
     def swipes_back(self) -> None:
         """Swipe in from the edge as who wears gloves does unawares: the browser goes back."""
         self.page.evaluate("history.back()")

@@ -34,6 +34,42 @@ class LayoutSeen:
         )
         return min(widths)
 
+    @property
+    def calls_not_in_view(self) -> str:
+        """What is said of calls that the list of alarms has no room for; nothing while all are seen."""
+        said = self.page.get_by_test_id("alarms-unseen")
+        return said.inner_text() if said.count() else ""
+
+    def looks_at_calls_not_in_view(self) -> None:
+        """Press that."""
+        self.page.get_by_test_id("alarms-unseen").click()
+
+    @property
+    def storeys_out_of_sight(self) -> list[str]:
+        """The storey buttons that are not wholly seen without scrolling."""
+        found: list[str] = self.page.get_by_test_id("storeys").evaluate(
+            """(bar) => {
+              const room = bar.getBoundingClientRect();
+              return [...bar.querySelectorAll('button')].filter((button) => {
+                const {left, top, right, bottom} = button.getBoundingClientRect();
+                return left < room.left - 1 || right > room.right + 1
+                  || top < room.top - 1 || bottom > room.bottom + 1;
+              }).map((button) => button.querySelector('.name').textContent);
+            }"""
+        )
+        return found
+
+    @property
+    def storeys_end(self) -> float:
+        """How far the storey buttons reach into the map from its left edge (CSS pixels)."""
+        bar, seen = (
+            self.page.get_by_test_id("storeys").bounding_box(),
+            self.page.get_by_test_id("map").bounding_box(),
+        )
+        assert bar is not None
+        assert seen is not None
+        return bar["x"] + bar["width"] - seen["x"]
+
     def sits_at(self, width: int, height: int) -> None:
         """Use a screen of another size (CSS pixels)."""
         self.page.set_viewport_size({"width": width, "height": height})

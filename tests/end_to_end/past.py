@@ -27,6 +27,12 @@ class PastCompared:
         self.page.mouse.up()
 
     @property
+    def other_day(self) -> str:
+        """The day of what is shown, where the top bar names it; nothing for today."""
+        said = self.page.get_by_test_id("day")
+        return said.inner_text() if said.count() else ""
+
+    @property
     def play_button(self) -> str:
         """Play, where the replay stands; else Pause."""
         return self.page.get_by_test_id("play").inner_text()

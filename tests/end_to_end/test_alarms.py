@@ -2,6 +2,7 @@
 
 import re
 import time
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -123,6 +124,40 @@ def test_a_call_tells_the_age_of_the_place_beside_that_of_the_call_where_they_di
     mayday, other = commander.banners
     assert re.search(r"MAYDAY QUIET .*STALE .+ raised \d+ s ago", mayday)
     assert re.search(r"PASS HEARD (?!.*STALE).*raised \d+ s ago", other)
+
+
+def test_a_sound_that_the_system_has_taken_away_is_not_said_to_be_on(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    commander.may_lose_the_sound()
+    in_trouble(server, post, commander)
+    commander.turns_trails_off()
+    eventually(lambda: "Sound is off" in commander.alarm_words)
+    commander.selects("e7-1")
+    eventually(lambda: "Sound is off" not in commander.alarm_words)
+    commander.loses_the_sound()
+    eventually(lambda: "Sound is off" in commander.alarm_words)
+    commander.selects("e7-1")
+    eventually(lambda: "Sound is off" not in commander.alarm_words)
+
+
+def test_a_second_call_that_the_words_of_the_first_push_out_of_sight_is_named_and_a_press_away(
+    server: Server, post: Post, commander: Commander, axe: Path
+) -> None:
+    incident = post.open_incident()
+    crew = [responder(T0, name, "A", [2 * at, 2, 0]) for at, name in enumerate(("first", "second", "third"))]
+    wordy = alarm(T0, "first", text="Trapped under a shelf, partner unconscious, second exit blocked. " * 12)
+    heard(
+        post, incident, base(T0), *crew, wordy, alarm(T0 + 1, "second"), alarm(T0 + 2, "third", kind="pass")
+    )
+    commander.sits_at_a_tablet()
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.calls_not_in_view == "2 not in view: MAYDAY SECOND, PASS THIRD")
+    assert commander.faults_of_access(axe) == []
+    commander.looks_at_calls_not_in_view()
+    eventually(lambda: commander.calls_not_in_view == "1 not in view: MAYDAY FIRST")
+    commander.looks_at_calls_not_in_view()
+    eventually(lambda: commander.calls_not_in_view == "2 not in view: MAYDAY SECOND, PASS THIRD")
 
 
 def test_a_call_takes_the_help_sheet_away_which_may_be_opened_again_while_it_stands(

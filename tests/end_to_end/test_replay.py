@@ -1,6 +1,7 @@
 """A replay shows what was shown."""
 
 import re
+import time
 
 import pytest
 
@@ -24,6 +25,27 @@ def alike(before: list[Pixels], after: list[Pixels]) -> bool:
         (one.x, one.y) == pytest.approx((other.x, other.y), abs=0.5)
         for one, other in zip(before, after, strict=True)
     )
+
+
+def test_a_time_of_another_day_is_told_with_its_day_also_in_the_list_of_incidents(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident("Loaded today")
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
+    recorded(post, incident, T0)
+    commander.sits_at_a_tablet()
+    commander.opens(server.url, incident)
+    eventually(lambda: "2025" in commander.other_day)
+    assert commander.top_bar_height < 60
+    chooser = commander.page.get_by_test_id("incident-chooser")
+    assert commander.other_day in chooser.locator("option:checked").inner_text()
+
+    now = time.time()
+    today = post.open_incident("Today", clock="live")
+    heard(post, today, base(now), responder(now, "walker", "A", [2, 2, 0]))
+    commander.opens(server.url, today)
+    eventually(lambda: commander.incident == "Today" and commander.board())
+    assert commander.other_day == ""
 
 
 def test_a_replay_shows_what_live_showed(server: Server, post: Post, commander: Commander) -> None:

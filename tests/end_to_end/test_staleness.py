@@ -41,6 +41,43 @@ def test_a_responder_who_falls_silent_turns_stale_then_lost_in_word_and_shape(
     commander.sees("QUIET", "Live")
 
 
+def test_air_that_was_told_long_ago_is_said_to_be_of_then_though_its_bearer_is_live(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    told = {"kind": "status", "t": T0, "node": "walker", "air_bar": 180}
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [3, 3, 0]), told)
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.board()["WALKER"].air == "air 180 bar")
+    heard(post, incident, step(T0 + 300, "walker", [1, 0, 0]))
+    eventually(lambda: commander.board()["WALKER"].air == "air was 180 bar 5 min ago")
+    assert commander.board()["WALKER"].status == "Live"
+    assert commander.cut_off() == []
+    heard(post, incident, told | {"t": T0 + 301, "air_bar": 90})
+    eventually(lambda: commander.board()["WALKER"].air == "air 90 bar")
+
+
+def test_who_is_lost_because_the_clock_of_the_unit_is_wrong_has_that_on_the_card(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident(clock="live")
+    now = time.time()
+    unset = responder(5.0, "unset", "A", [3, 3, 0])
+    heard(post, incident, unset, base(now), responder(now, "set", "A", [5, 3, 0]))
+    heard(post, incident, step(9.0, "unset", [1, 0, 0]))
+    commander.sits_at_a_tablet()
+    commander.opens(server.url, incident)
+    commander.sees("UNSET", "Lost")
+    assert (commander.cut_off(), commander.off_the_screen) == ([], [])
+    commander.selects("unset")
+
+    def is_told_why() -> bool:
+        heard(post, incident, step(time.time(), "set", [0.1, 0, 0]))
+        return "60 s late" in commander.card
+
+    eventually(is_told_why, every_s=0.5)
+
+
 def test_who_is_not_tracked_any_more_is_told_with_the_reason_and_is_no_responder_inside(
     server: Server, post: Post, commander: Commander
 ) -> None:

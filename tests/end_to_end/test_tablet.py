@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.end_to_end.canvas import FIRST_CREW
 from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import alarm, base, heard, recorded, responder, step
 from tests.running import Post, Server, eventually
@@ -77,6 +78,22 @@ def test_however_many_call_for_help_the_map_stays(server: Server, post: Post, co
     commander.opens(server.url, incident)
     eventually(lambda: len(commander.banners) == 8)
     assert commander.map_height >= 0.2 * 768
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768), (1366, 1024)])
+def test_every_storey_of_a_tower_is_seen_while_somebody_calls_and_hides_nobody(
+    server: Server, post: Post, commander: Commander, width: int, height: int
+) -> None:
+    levels = [{"level": at, "name": str(at) if at else "G", "up_m": 3.2 * at} for at in range(-1, 11)]
+    incident = post.open_incident(levels=levels)
+    crew = [responder(T0, "west", "A", [-30, 2, 0], sigma_m=0.1), responder(T0, "east", "B", [30, 2, 3])]
+    heard(post, incident, base(T0), *crew, alarm(T0, "east", text=LUNAR))
+    commander.sits_at(width, height)
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.banners)
+    assert commander.storeys_out_of_sight == []
+    assert commander.off_the_screen == []
+    eventually(lambda: commander.settled_mark(FIRST_CREW).left > commander.storeys_end)
 
 
 def test_however_long_a_name_is_the_status_and_the_age_are_seen(

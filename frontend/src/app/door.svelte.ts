@@ -67,6 +67,7 @@ export class Door {
       if (wish !== this.wishes) return;
       this.trouble = null;
       this.left = left;
+      this.incidents = withShown(this.incidents, incident);
       this.owner.open(incident, link);
     } catch (cause) {
       if (wish !== this.wishes) return;
@@ -102,7 +103,7 @@ export class Door {
       return null;
     });
     if (list === null || look !== this.looks) return;
-    this.incidents = list;
+    this.incidents = withShown(list, this.owner.incident);
     const current = list.find(({ id }) => id === this.owner.incident?.id);
     if (current) this.owner.renewed(current);
     this.trouble = null;
@@ -119,4 +120,9 @@ export class Door {
   failQuietly(cause: unknown): void {
     if (cause instanceof api.RequestFailed && cause.status === 401) this.fail(cause);
   }
+}
+
+/** A list may be older than the incident that is shown: without it there, nothing would say which one that is. */
+function withShown(list: readonly Incident[], shown: Incident | null): readonly Incident[] {
+  return shown === null || list.some(({ id }) => id === shown.id) ? list : [shown, ...list];
 }

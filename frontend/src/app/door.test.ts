@@ -61,6 +61,15 @@ test("what the address names is not opened over what was chosen while the list w
   expect(door.incidents.map(({ id }) => id)).toEqual(["mill", "dock"]);
 });
 
+test("an incident opened since the list was read is in the list as soon as it is shown", async () => {
+  const listed = door.refresh();
+  await answer("list", [anIncident({ id: "mill" })]);
+  await listed;
+  void door.choose("new");
+  await answer("new", anIncident({ id: "new" }));
+  expect([opened, door.incidents.map(({ id }) => id)]).toEqual([["new"], ["new", "mill"]]);
+});
+
 test("a request that fails after a later one was answered is no trouble any more", async () => {
   const early = door.refresh();
   const late = door.refresh();

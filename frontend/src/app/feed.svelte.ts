@@ -1,5 +1,5 @@
 /** What one source tells: its newest picture, its clock, and the state of the way to it. */
-import type { IncidentClock } from "../domain/clock";
+import { heard, type IncidentClock } from "../domain/clock";
 import { type Picture, pictureOf, withDelta } from "../domain/picture";
 import type { DeltaMessage, FrameMessage, HeartbeatMessage } from "../domain/types";
 import { type LinkState, NOT_CONNECTED, type Source } from "../sources/source";
@@ -9,6 +9,8 @@ const STANDING: IncidentClock = { t: 0, localMs: 0, rate: 0 };
 export interface FeedOwner {
   /** Incident seconds per local second, between two messages. */
   rate(): number;
+  /** Its time only goes on: what tells an earlier moment has been long under way. */
+  readonly onward: boolean;
   /** A frame or delta has changed the picture; `asked`: to what is asked for, not to what was. */
   changed(message: FrameMessage | DeltaMessage, asked: boolean): void;
   heartbeat(message: HeartbeatMessage): void;
@@ -36,7 +38,7 @@ export class Feed {
       heartbeat: (message, t) => {
         if (t === null) return;
         this.owner.heartbeat(message);
-        this.keepTime(t);
+        this.told(t);
       },
       state: (link) => {
         const before = this.link.link;
@@ -74,7 +76,13 @@ export class Feed {
   private take(message: FrameMessage | DeltaMessage, picture: Picture, t: number | null): void {
     this.picture = picture;
     this.owner.changed(message, t !== null);
-    // A picture never stands under another moment than its own.
-    this.keepTime(t ?? message.clock_t);
+    // A picture of the past never stands under another moment than its own.
+    this.told(t ?? message.clock_t);
+  }
+
+  private told(t: number): void {
+    const { clock, owner } = this;
+    if (owner.onward) this.clock = heard(clock, t, performance.now(), owner.rate());
+    else this.keepTime(t);
   }
 }

@@ -1,4 +1,5 @@
-import { expect, test } from "vitest";
+import { afterEach, expect, test, vi } from "vitest";
+import { incidentTime } from "../domain/clock";
 import { aFrame, aNode, NOON } from "../domain/samples";
 import { type LinkState, type Listener, NOT_CONNECTED, type Source } from "../sources/source";
 import { Feed } from "./feed.svelte";
@@ -15,15 +16,20 @@ class Way implements Source {
   becomes(link: LinkState["link"]): void {
     this.listener?.state({ link, lastWordMs: null, attempts: 0 });
   }
-  shows(): void {
-    this.listener?.frame(aFrame([aNode()]), NOON);
+  shows(t = NOON): void {
+    this.listener?.frame(aFrame([aNode()], { clock_t: t, t }), t);
   }
 }
+
+afterEach(() => {
+  vi.useRealTimers();
+});
 
 function followed(): { feed: Feed; way: Way } {
   const way = new Way();
   const nothing = () => undefined;
   const feed = new Feed({
+    onward: true,
     rate: () => 1,
     changed: nothing,
     heartbeat: nothing,
@@ -49,4 +55,13 @@ test("what was shown stays while the connection is lost, and is no loss any more
   expect([feed.isLost, feed.picture?.nodes.size]).toEqual([true, 1]);
   way.becomes("open");
   expect(feed.isLost).toBe(false);
+});
+
+test("a live picture that was long under way makes nobody's fix younger", () => {
+  vi.useFakeTimers();
+  const { feed, way } = followed();
+  way.shows(NOON);
+  vi.advanceTimersByTime(9000);
+  way.shows(NOON + 5);
+  expect(incidentTime(feed.clock, performance.now())).toBe(NOON + 9);
 });

@@ -20,6 +20,7 @@ export class Replay {
   /** The moment that was asked for and is not shown yet (Unix s): until then the clock stands with what is shown. */
   soughtT = $state<number | null>(null);
   readonly feed: Feed = new Feed({
+    onward: false,
     rate: () => (this.paused || this.feed.isLost || this.soughtT !== null ? 0 : this.speed),
     changed: (_, asked) => {
       if (asked) this.soughtT = null;
@@ -45,7 +46,7 @@ export class Replay {
     const { incident, extent } = this.owner;
     if (incident === null) return;
     const { from, to } = extent;
-    const begin = Math.max(0, Math.min(from, incident.first_t ?? from, t));
+    const begin = Math.max(0, Math.min(from, t));
     const end = Math.max(to, t);
     const at = within({ from: begin, to: end }, t);
     this.reach = { from: begin, to: end };

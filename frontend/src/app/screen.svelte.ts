@@ -56,6 +56,7 @@ export class Screen implements DoorOwner, ReplayOwner {
 
   /** The live incident is followed all the time: an alarm must reach whoever looks at the past. */
   private readonly live = new Feed({
+    onward: true,
     rate: () => (this.incident?.clock === "live" && this.incident.state === "active" ? 1 : 0),
     changed: (message) => this.liveChanged(message),
     heartbeat: ({ seq }) => this.asking.heartbeat(seq),

@@ -45,6 +45,20 @@ test("a row says alarm, status, and the storey with its probability where it is 
   expect(crews[1]?.rows[1]).toMatchObject({ alarm: null, level: "Level G", levelUnsure: false });
 });
 
+test("air that was told long ago is of then, though its bearer is live, and told by whom nobody knows when, of now", () => {
+  const airOf = (air_t?: number) =>
+    board(
+      pictureWith(aNode({ air_bar: 180, ...(air_t !== undefined && { air_t }) })),
+      NOON,
+      STOREYS,
+      DEFAULT_LIMITS,
+      new Map(),
+    )[0]?.rows[0];
+  expect(airOf(NOON - 30)).toMatchObject({ air: "180 bar", airOld: false });
+  expect(airOf(NOON - 300)).toMatchObject({ status: "live", air: "was 180 bar 5 min ago", airOld: true });
+  expect(airOf()).toMatchObject({ air: "180 bar", airOld: false });
+});
+
 test("rows age by themselves, without another word from the server", () => {
   const later = board(picture, NOON + 70, STOREYS, DEFAULT_LIMITS, alarms);
   expect(later[1]?.rows[1]).toMatchObject({ status: "lost", age_s: 70 });

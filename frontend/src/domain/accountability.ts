@@ -3,9 +3,9 @@
 import { ce95 } from "./ellipse";
 import { storeyUnsure, storeyWords } from "./levels";
 import type { Picture } from "./picture";
-import { ageS, covarianceAt, type StalenessLimits, statusAt } from "./staleness";
+import { ageS, covarianceAt, type StalenessLimits, statusAt, toldAt } from "./staleness";
 import type { FrameAlarm, FrameNode, Level, Status } from "./types";
-import { alarmWord, nameOf, statusWord } from "./words";
+import { airWords, alarmWord, isOld, nameOf, statusWord } from "./words";
 
 export interface BoardRow {
   readonly node: string;
@@ -16,8 +16,9 @@ export interface BoardRow {
   readonly levelUnsure: boolean;
   readonly age_s: number;
   readonly error_m: number | null;
-  readonly air_bar: number | null;
-  readonly battery: number | null;
+  readonly air: string;
+  /** The report of it is too old to be taken for what is so now. */
+  readonly airOld: boolean;
   readonly alarm: string | null;
   readonly state: FrameNode;
 }
@@ -53,6 +54,7 @@ export function board(
     const status = statusAt(state, now, limits);
     const covariance = covarianceAt(sighting, now);
     const alarm = alarms.get(state.node);
+    const airTold = toldAt(state.air_t, status, now, limits);
     const row: BoardRow = {
       node: state.node,
       name: nameOf(state),
@@ -62,8 +64,8 @@ export function board(
       levelUnsure: storeyUnsure(state),
       age_s: ageS(state, now),
       error_m: covariance && ce95(covariance),
-      air_bar: state.air_bar ?? null,
-      battery: state.battery ?? null,
+      air: airWords(state.air_bar, airTold),
+      airOld: isOld(airTold),
       alarm: alarm ? alarmWord(alarm.alarm) : null,
       state,
     };

@@ -15,6 +15,8 @@ export interface Picture {
   readonly clockT: number;
   readonly nodes: ReadonlyMap<string, Sighting>;
   readonly alarms: readonly FrameAlarm[];
+  /** What the estimator has noticed, or could not take in. */
+  readonly notices: FrameMessage["notices"];
   /** The incident's estimator could not go on: nothing that is reported since is in the picture, no alarm either. */
   readonly standsStill: boolean;
   /** What was last reported is not in the picture yet, and has not been for seconds: an alarm may be missing. */
@@ -40,6 +42,7 @@ export function pictureOf(frame: FrameMessage): Picture {
     clockT: frame.clock_t,
     nodes,
     alarms: frame.alarms,
+    notices: frame.notices,
     standsStill: standsStill(frame),
     behind: isBehind(frame),
   };
@@ -56,6 +59,7 @@ export function withDelta(picture: Picture, delta: DeltaMessage): Picture {
     clockT: delta.clock_t,
     nodes,
     alarms: delta.alarms,
+    notices: delta.notices,
     standsStill: standsStill(delta),
     behind: isBehind(delta),
   };

@@ -1,6 +1,7 @@
 /** Age of a fix, and what it makes of the node: live, stale, lost. */
 import type { Sighting } from "./picture";
 import type { Covariance, FrameNode, Incident, Role, Status } from "./types";
+import type { Told } from "./words";
 
 /** Ages beyond which a fix is stale and lost (s), for what moves and what stands. */
 export interface StalenessLimits {
@@ -65,6 +66,17 @@ export function statusAt(node: FrameNode, now: number, limits: StalenessLimits):
   const staleAfter = moving ? limits.staleAfterS : limits.staticStaleAfterS;
   const byAge: Status = age > lostAfter ? "lost" : age > staleAfter ? "stale" : "live";
   return SEVERITY[byAge] > SEVERITY[node.status] ? byAge : node.status;
+}
+
+/** How old what a node told at `toldT` (Unix s; nothing: not known when) is at `now`. */
+export function toldAt(
+  toldT: number | null | undefined,
+  status: Status,
+  now: number,
+  limits: StalenessLimits,
+): Told {
+  const age_s = toldT == null ? null : Math.max(0, now - toldT);
+  return { status, age_s, oldAfter_s: limits.lostAfterS };
 }
 
 /** Covariance at `now` (m²): the server's, grown by what a moving node may have walked since. */

@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import { NOON } from "./samples";
-import { beforeEnd, clockTime, dateTime } from "./time";
+import { beforeEnd, clockTime, dateTime, day, utc } from "./time";
 
 test("a time of day is local and has seconds", () => {
   const local = new Date(NOON * 1000);
@@ -19,6 +19,11 @@ test("midnight is 00, never 24", () => {
 test("a date names the year and the time", () => {
   expect(dateTime(NOON)).toContain(String(new Date(NOON * 1000).getFullYear()));
   expect(dateTime(NOON)).toContain(clockTime(NOON));
+});
+
+test("a day is the local one, and universal time is the same everywhere", () => {
+  expect(dateTime(NOON)).toBe(`${day(NOON)}, ${clockTime(NOON)}`);
+  expect(utc(NOON + 7.25)).toBe("2025-11-21T08:00:07Z");
 });
 
 test.each([

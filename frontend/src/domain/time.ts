@@ -13,9 +13,19 @@ export function clockTime(t: number): string {
   return CLOCK.format(new Date(t * 1000));
 }
 
+/** "20 Nov 2025" of a Unix time in seconds. */
+export function day(t: number): string {
+  return DAY.format(new Date(t * 1000));
+}
+
 /** "20 Nov 2025, 21:04:10". */
 export function dateTime(t: number): string {
-  return `${DAY.format(new Date(t * 1000))}, ${clockTime(t)}`;
+  return `${day(t)}, ${clockTime(t)}`;
+}
+
+/** "2025-11-20T20:04:10Z": what cannot be misread in another time zone. */
+export function utc(t: number): string {
+  return new Date(t * 1000).toISOString().replace(/\.\d+Z$/, "Z");
 }
 
 /** How far before the end: "−3:05", "−1:02:00", "0:00". */

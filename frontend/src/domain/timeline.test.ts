@@ -31,6 +31,13 @@ describe("the bar", () => {
     expect(extentOf(anIncident({ first_t: null }), [], NOON + 2, NOON + 60).from).toBe(NOON + 2);
   });
 
+  test("of a live incident does not begin decades before it because the clock of one unit was never set", () => {
+    const one = [track("unset", 5), track("ff1", NOON + 7)];
+    expect(extentOf(anIncident({ first_t: 5 }), one, 5, NOON + 60).from).toBe(NOON + 7);
+    expect(extentOf(anIncident({ first_t: 5 }), [], 5, NOON + 60).from).toBe(NOON);
+    expect(extentOf(anIncident({ first_t: 5, clock: "recorded" }), [], UNSEEN, NOON + 60).from).toBe(5);
+  });
+
   test("begins at the first second that can be shown, or the first point of a track", () => {
     expect(extentOf(anIncident({ first_t: NOON + 5 }), [], UNSEEN, NOON + 60).from).toBe(NOON + 5);
     expect(

@@ -1,5 +1,6 @@
 import { expect, test } from "vitest";
 import { aNode, STOREYS } from "./samples";
+import type { Status } from "./types";
 import * as words from "./words";
 
 test.each([
@@ -46,16 +47,39 @@ test.each([
   expect(words.compassBearing(heading)).toBe(text);
 });
 
+const told = (status: Status, age_s: number | null = null) => ({ status, age_s, oldAfter_s: 60 });
+
 test("air and battery that were not reported are not made up", () => {
-  expect([words.airWords(null, "live"), words.batteryWords(null)]).toEqual(["not reported", "not reported"]);
-  expect([words.airWords(0, "live"), words.batteryWords(0)]).toEqual(["0 bar", "0 %"]);
-  expect([words.airWords(182.4, "live"), words.batteryWords(0.8)]).toEqual(["182 bar", "80 %"]);
+  const now = told("live");
+  expect([words.airWords(null, now), words.batteryWords(null, now)]).toEqual([
+    "not reported",
+    "not reported",
+  ]);
+  expect([words.airWords(0, now), words.batteryWords(0, now)]).toEqual(["0 bar", "0 %"]);
+  expect([words.airWords(182.4, now), words.batteryWords(0.8, now)]).toEqual(["182 bar", "80 %"]);
 });
 
 test("what somebody reported who is not heard any more is said to be of then", () => {
-  expect(words.airWords(290, "live")).toBe("290 bar");
-  expect([words.airWords(290, "stale"), words.airWords(290, "lost")]).toEqual(["was 290 bar", "was 290 bar"]);
-  expect(words.airWords(null, "lost")).toBe("not reported");
+  expect(words.airWords(290, told("live"))).toBe("290 bar");
+  const gone = [words.airWords(290, told("stale")), words.airWords(290, told("lost"))];
+  expect(gone).toEqual(["was 290 bar", "was 290 bar"]);
+  expect(words.airWords(null, told("lost"))).toBe("not reported");
+});
+
+test("who walks on while his air has not been told for minutes is not said to have that much", () => {
+  expect(words.airWords(290, told("live", 60))).toBe("290 bar");
+  expect(words.airWords(290, told("live", 240))).toBe("was 290 bar 4 min ago");
+  expect(words.batteryWords(0.8, told("live", 240))).toBe("was 80 % 4 min ago");
+  expect(words.airWords(290, told("lost", 240))).toBe("was 290 bar 4 min ago");
+});
+
+test("no place is told by digits that mean nothing", () => {
+  expect([12.44, 9999, 2.2e9].map(words.spread)).toEqual(["12.4 m", "9999 m", "over 10 km"]);
+});
+
+test("an age that only a wrong clock explains stays short", () => {
+  expect([359_999, 5 * 86_400, 1.8e9].map(words.ageWords)).toEqual(["99 h 59 min", "5 days", "> 999 days"]);
+  expect([359_999, 5 * 86_400, 1.8e9].map(words.shortAge)).toEqual(["99 h", "5 d", "> 999 d"]);
 });
 
 test("lengths carry their unit and no more digits than matter", () => {

@@ -24,12 +24,16 @@ export function alarmWord(alarm: FrameAlarm["alarm"]): string {
   return ALARM_WORDS[alarm];
 }
 
-/** An age in seconds as "12 s", "3 min 05 s", "2 h 04 min". */
+/** Who has not been heard for so long was never heard by this clock: the unit's own is wrong (days). */
+const MOST_DAYS = 999;
+
+/** An age in seconds as "12 s", "3 min 05 s", "2 h 04 min", "5 days". */
 export function ageWords(age_s: number): string {
   const whole = Math.max(0, Math.floor(age_s));
   if (whole < 60) return `${whole} s`;
   if (whole < 3600) return `${Math.floor(whole / 60)} min ${two(whole % 60)} s`;
-  return `${Math.floor(whole / 3600)} h ${two(Math.floor((whole % 3600) / 60))} min`;
+  if (whole < 360_000) return `${Math.floor(whole / 3600)} h ${two(Math.floor((whole % 3600) / 60))} min`;
+  return `${days(whole)} days`;
 }
 
 /** An age beside a mark on the map, where there is room for one unit only: "12 s", "3 min", "2 h". */
@@ -37,7 +41,12 @@ export function shortAge(age_s: number): string {
   const whole = Math.max(0, Math.floor(age_s));
   if (whole < 120) return `${whole} s`;
   if (whole < 7200) return `${Math.floor(whole / 60)} min`;
-  return `${Math.floor(whole / 3600)} h`;
+  return whole < 360_000 ? `${Math.floor(whole / 3600)} h` : `${days(whole)} d`;
+}
+
+function days(whole_s: number): string {
+  const count = Math.floor(whole_s / 86_400);
+  return count > MOST_DAYS ? `> ${MOST_DAYS}` : String(count);
 }
 
 export function agoWords(age_s: number): string {
@@ -93,6 +102,11 @@ export function metres(value_m: number): string {
   return `${Math.abs(value_m) >= 100 ? value_m.toFixed(0) : value_m.toFixed(1)} m`;
 }
 
+/** How far off a position may be: beyond 10 km its digits tell nothing. */
+export function spread(value_m: number): string {
+  return value_m > 10_000 ? "over 10 km" : metres(value_m);
+}
+
 /** A distance to one side or the other: "4.0 m S", in one piece where a line breaks. */
 export function sideways(value_m: number, positive: string, negative: string): string {
   return `${metres(Math.abs(value_m))} ${value_m < 0 ? negative : positive}`.replaceAll(" ", "\u00a0");
@@ -105,19 +119,32 @@ export function compassBearing(heading_rad: number): string {
   return `${String(wrapped).padStart(3, "0")}°`;
 }
 
+/** How old a report is: a unit may be heard while what measures air or battery has long been silent. */
+export interface Told {
+  readonly status: Status;
+  /** Since it was told (s); null where that is not known. */
+  readonly age_s: number | null;
+  /** From this age on it is not taken for what is so now (s). */
+  readonly oldAfter_s: number;
+}
+
+export function isOld({ age_s, oldAfter_s }: Told): boolean {
+  return age_s !== null && age_s > oldAfter_s;
+}
+
+/** What somebody reported, and that it was so then where nothing has been heard since, of him or of that. */
+export function asOf(told: Told, said: string): string {
+  if (isOld(told)) return `was ${said} ${shortAge(told.age_s ?? 0)} ago`;
+  return told.status === "live" ? said : `was ${said}`;
+}
+
 /** A charge of 0 to 1 as "80 %". */
-export function batteryWords(battery: number | null | undefined): string {
-  if (battery == null) return "not reported";
-  return `${Math.round(battery * 100)} %`;
+export function batteryWords(battery: number | null | undefined, told: Told): string {
+  return battery == null ? "not reported" : asOf(told, `${Math.round(battery * 100)} %`);
 }
 
-/** What somebody reported, and that it was so then where nothing has been heard since. */
-export function asOf(status: Status, said: string): string {
-  return status === "live" ? said : `was ${said}`;
-}
-
-export function airWords(air_bar: number | null | undefined, status: Status): string {
-  return air_bar == null ? "not reported" : asOf(status, `${Math.round(air_bar)} bar`);
+export function airWords(air_bar: number | null | undefined, told: Told): string {
+  return air_bar == null ? "not reported" : asOf(told, `${Math.round(air_bar)} bar`);
 }
 
 function two(value: number): string {

@@ -6,12 +6,12 @@ const MAP = { width: 800, height: 600 };
 const MARK = 13;
 const NOWHERE_BEFORE: ReadonlyMap<string, Spot> = new Map();
 
-function wants(node: string, x: number, y: number, always = false): Wanted {
+function wants(node: string, x: number, y: number, always = false, rank = 0): Wanted {
   const [whole, short] = [
     { width: 130, height: 37 },
     { width: 80, height: 21 },
   ];
-  return { node, x, y, away: MARK + 6, whole, short, always };
+  return { node, x, y, away: MARK + 6, whole, short, always, rank };
 }
 
 const markOf = ({ x, y }: Wanted): Box => ({ x: x - MARK, y: y - MARK, width: 2 * MARK, height: 2 * MARK });
@@ -55,6 +55,15 @@ test("a label beside the mark, whole or short, comes before one with a line", ()
   const kinds = [...placed(crowd(12)).values()].map(({ kind }) => kind);
   expect(kinds).toContain("whole");
   expect(kinds.lastIndexOf("whole")).toBeLessThan(kinds.indexOf("led"));
+});
+
+test("among more than can be followed those who matter more have their lines", () => {
+  const all = crowd(MOST_LED + 20).map((label, at) => ({ ...label, rank: at < 2 ? 1 : 0 }));
+  const spots = placed(all);
+  expect([spots.has("ff0"), spots.has("ff1")]).toEqual([true, true]);
+  expect([...spots].filter(([node, { kind }]) => kind === "led" && node !== "ff0" && node !== "ff1")).toEqual(
+    [],
+  );
 });
 
 test("a line goes round the label of another where there is a way", () => {

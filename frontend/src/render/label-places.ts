@@ -18,6 +18,8 @@ export interface Wanted {
   readonly short: Size;
   /** It is shown, even if it covers others. */
   readonly always: boolean;
+  /** How much it matters among the others. */
+  readonly rank: number;
 }
 
 /** Whole or short beside the mark, or short and led to it by a line. */
@@ -32,10 +34,12 @@ export interface Spot {
   readonly line: readonly Box[];
 }
 
-/** More labels than these have no lines, as nobody could follow them, save those that are always shown. */
+/** Where more labels than these matter as much as one, it has no line, as nobody could follow them all. */
 export const MOST_LED = 30;
 /** Rings of places for labels with a line: how far beyond the mark (CSS pixels), and how many places each has. */
 const RINGS_PX = [26, 52, 78];
+/** Who is not heard is looked for in the thick of a crowd as well: how much farther a label may go. */
+const FAR_RINGS_PX = [...RINGS_PX, 117, 156, 195];
 const ON_RING = 12;
 /** A line is held clear of labels in squares of this size. */
 const LINE_PX = 8;
@@ -65,6 +69,10 @@ export function labelPlaces(
   const free = (places: readonly Spot[], occupied: Occupied) =>
     places.find(({ box }) => inside(box, map) && occupied.leaves(box));
   const clear = ({ line }: Spot) => line.every((part) => written.leaves(part));
+  const asMuch = (rank: number) => wanted.reduce((sum, other) => sum + Number(other.rank >= rank), 0);
+  const led = new Map(
+    [...new Set(wanted.map(({ rank }) => rank))].map((rank) => [rank, asMuch(rank) <= MOST_LED]),
+  );
   for (const label of wanted) {
     const last = before.get(label.node);
     const pick = (places: readonly Spot[]) =>
@@ -74,9 +82,9 @@ export function labelPlaces(
       );
     const whole = beside("whole", label);
     let spot = pick(whole) ?? pick(beside("short", label));
-    if (spot === undefined && (label.always || wanted.length <= MOST_LED)) {
-      const led = farOff(label);
-      spot = pick(led.filter(clear)) ?? pick(led);
+    if (spot === undefined && (label.always || led.get(label.rank))) {
+      const far = farOff(label);
+      spot = pick(far.filter(clear)) ?? pick(far);
     }
     if (label.always) spot ??= free(whole, written) ?? free(whole, over) ?? whole[0];
     if (spot === undefined) continue;
@@ -106,8 +114,8 @@ function beside(kind: "whole" | "short", { x, y, away, [kind]: { width, height }
 }
 
 /** All round, the nearer ring first. */
-function farOff({ x, y, away, short: { width, height } }: Wanted): Spot[] {
-  return RINGS_PX.flatMap((beyond, ring) =>
+function farOff({ x, y, away, rank, short: { width, height } }: Wanted): Spot[] {
+  return (rank > 0 ? FAR_RINGS_PX : RINGS_PX).flatMap((beyond, ring) =>
     Array.from({ length: ON_RING }, (_, step): Spot => {
       const turn = (2 * Math.PI * step) / ON_RING;
       const box = {

@@ -3,7 +3,7 @@ import { labelWords } from "../domain/label";
 import { isNarrow } from "../domain/view";
 import { labelPlaces, nearest, type Spot, type Wanted } from "./label-places";
 import type { Box, Layer, Placed, Scene } from "./layer";
-import { markReach, movers, RADIUS } from "./place";
+import { markReach, movers, RADIUS, rankOf } from "./place";
 import { scaleBox } from "./scale";
 
 const LINE_PX = 16;
@@ -81,6 +81,7 @@ function labelOf(context: CanvasRenderingContext2D, scene: Scene, place: Placed)
     whole: size(whole),
     short: size([short]),
     always: urgent(scene, place),
+    rank: rankOf(scene, place.node),
   };
   return { place, whole, short, wanted };
 }

@@ -1,7 +1,7 @@
 /** Where nodes are drawn, and which one a finger means. */
 import { levelOf } from "../domain/levels";
 import { isMoving, statusAt } from "../domain/staleness";
-import type { FrameNode } from "../domain/types";
+import type { FrameNode, Status } from "../domain/types";
 import { toScreen } from "../domain/view";
 import type { Placed, Scene } from "./layer";
 
@@ -37,12 +37,24 @@ export function placed(scene: Scene): readonly Placed[] {
   return all;
 }
 
-/** Responders and UAVs, those in alarm and the selected one last, so that they lie on top. */
+const WORSE: Record<Status, number> = { retired: 0, live: 0, stale: 1, lost: 2 };
+
+/** How much a responder matters to who looks: those not heard more than those live, alarm and choice most. */
+export function rankOf(scene: Scene, node: FrameNode): number {
+  if (node.node === scene.selected) return 4;
+  return scene.alarms.has(node.node) ? 3 : WORSE[statusAt(node, scene.now, scene.limits)];
+}
+
+/** Responders and UAVs, those that matter most last, so that they lie on top. */
 export function movers(scene: Scene): Placed[] {
-  const rank = ({ node }: Placed) => (node.node === scene.selected ? 2 : scene.alarms.has(node.node) ? 1 : 0);
   return placed(scene)
     .filter(({ node }) => isMoving(node.role))
-    .sort((a, b) => rank(a) - rank(b));
+    .map((place) => ({
+      place,
+      rank: place.elsewhere && place.node.node !== scene.selected ? -1 : rankOf(scene, place.node),
+    }))
+    .sort((a, b) => a.rank - b.rank)
+    .map(({ place }) => place);
 }
 
 /** How far from its place a responder's mark goes, with the rings that alarm and choice put around it (CSS pixels). */

@@ -446,7 +446,8 @@ export interface components {
          * @description What this process needs for its work.
          *
          *     Attributes:
-         *         log: the database answers, and its disk has room, where it is a file here.
+         *         log: the database answers, has not refused what was last written, and its disk has room, where it is a
+         *             file here.
          *         worker: an estimator worker is connected and ready to compute; it takes seconds to begin. Without one
          *             telemetry is still taken, and dots go stale.
          */
@@ -926,6 +927,11 @@ export interface components {
          *             motionless_s: for how long it had not moved at its newest status (s).
          *             moved: it was noticed to have been moved in the last ten minutes.
          *             retire_reason: why it has left, where that was said.
+         *             battery_t: epoch of the status that told it, Unix seconds; a unit may go on without its sensors.
+         *                 Left out where it was never told, as the three below.
+         *             air_t: the same of `air_bar`.
+         *             temperature_t: the same of `temperature_c`.
+         *             motionless_t: the same of `motionless_s`.
          */
         FrameNode: {
             node: string;
@@ -960,6 +966,14 @@ export interface components {
             motionless_s: number | null;
             moved: boolean;
             retire_reason: string | null;
+            /** @default null */
+            battery_t?: number | null;
+            /** @default null */
+            air_t?: number | null;
+            /** @default null */
+            temperature_t?: number | null;
+            /** @default null */
+            motionless_t?: number | null;
         };
         /**
          * FrameAlarm

@@ -9,16 +9,21 @@ export class AlarmSound {
   private context: AudioContext | null = null;
   private repeating: ReturnType<typeof setInterval> | undefined;
 
+  /** @param changed told whether it may sound, also when the system takes the sound away or gives it back */
+  constructor(private readonly changed: (enabled: boolean) => void) {}
+
   /** Whether the browser lets it sound. */
   get enabled(): boolean {
     return this.context?.state === "running";
   }
 
   /** Asks the browser to let it sound; works only within a person's act. */
-  async enable(): Promise<boolean> {
+  async enable(): Promise<void> {
     this.context ??= new AudioContext();
+    // A call, a lock screen, a lost loudspeaker: the system stops it, and nobody may believe that it sounds.
+    this.context.onstatechange = () => this.changed(this.enabled);
     await this.context.resume();
-    return this.enabled;
+    this.changed(this.enabled);
   }
 
   /** Sounds until told otherwise. */

@@ -35,6 +35,15 @@ def test_each_vital_sign_is_the_newest_that_was_reported() -> None:
     assert (node.battery, node.air_bar, node.temperature_c, node.motionless_s) == (0.9, 150.0, 40.0, None)
 
 
+def test_each_vital_sign_has_the_age_of_its_own_report() -> None:
+    made = board(
+        Status(t=10.0, node="ff1", battery=0.9, air_bar=200.0),
+        Status(t=500.0, node="ff1", battery=0.8),
+    )
+    (node,) = picture(made, "ff1").nodes
+    assert (node.battery_t, node.air_t, node.temperature_t, node.motionless_t) == (500.0, 10.0, None, None)
+
+
 def test_who_raises_an_alarm_is_shown_even_if_the_tracker_does_not_know_of_it() -> None:
     made = picture(board(Alarm(t=10.0, node="ff1", alarm="mayday", state="raised")))
     assert [(node.node, node.role, node.t, node.position_m) for node in made.nodes] == [
