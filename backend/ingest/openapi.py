@@ -33,7 +33,8 @@ def openapi_operation() -> dict[str, Any]:
             "has been closed since, and changes nothing. A reading that breaks the schema, or is more "
             "than 60 s ahead of `sent` (or, where the incident's clock is live, of the server's clock), "
             "does not refuse its batch: it is listed in `rejected`, kept in the log as it came, and not "
-            "given to the estimator. A batch may have no readings. Where an object names a field twice, "
+            "given to the estimator. An alarm from a clock ahead is taken, and counts as of when it came. "
+            "A batch may have no readings. Where an object names a field twice, "
             "the last one counts. The body may be gzip (`Content-Encoding: gzip`), in one member."
         ),
         "parameters": [{"name": "incident", "in": "path", "required": True, "schema": {"type": "string"}}],

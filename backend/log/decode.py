@@ -9,7 +9,7 @@ import msgspec
 
 from backend.errors import FieldError, NotUnderstood, TooLarge
 from backend.log.batch import Batch, decode_batch, decode_reading, take_apart
-from estimator.measurements import AnyReading
+from estimator.measurements import Alarm, AnyReading
 from estimator.measurements.base import EpochSeconds, SelfReading
 
 FUTURE_TOLERANCE_S = 60.0
@@ -111,7 +111,8 @@ def _judge_each(body: bytes, max_readings: int, now: float | None) -> Judged:
         except (msgspec.DecodeError, RecursionError) as error:
             raise _no_json(error) from error
         else:
-            if reading.until_t > horizon:
+            # A call for help is not lost because a clock is wrong: it is of when it came.
+            if reading.until_t > horizon and not isinstance(reading, Alarm):
                 rejected.append(_in_future(reading, horizon, index))
             else:
                 accepted.append(reading)

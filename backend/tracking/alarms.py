@@ -20,6 +20,9 @@ REPEAT_S = 30.0
 CALLS: frozenset[AlarmKind] = frozenset({"mayday", "pass", "help"})
 """By these a responder calls for help. `evacuate` is an order to it, and over as soon as it is lifted."""
 
+EPOCHS_KEPT = 64
+"""Of calls heard: what comes again by another way is known by its epoch."""
+
 TEXTS_KEPT = 8
 """A unit may say something new each time it repeats itself: the first words and the newest are kept."""
 
@@ -33,6 +36,7 @@ class AlarmEntry(msgspec.Struct):
         called_t: when it was last raised, or raised again, Unix seconds; None: never heard of.
         acknowledged: a person has acknowledged it since it was raised.
         texts: what was said, by whomever, in the order in which it came.
+        heard: epochs of the calls that were heard, Unix seconds.
     """
 
     state: AlarmState
@@ -40,6 +44,7 @@ class AlarmEntry(msgspec.Struct):
     called_t: float | None = None
     acknowledged: bool = False
     texts: list[str] = msgspec.field(default_factory=list)
+    heard: list[float] = msgspec.field(default_factory=list)
 
     @classmethod
     def first(cls, reading: Alarm) -> Self:
@@ -47,6 +52,7 @@ class AlarmEntry(msgspec.Struct):
         entry = cls(reading.state, reading.t, acknowledged=reading.state == "acknowledged")
         if reading.state == "raised":
             entry.called_t = reading.t
+            entry.heard.append(reading.t)
         entry._say(reading.text)
         return entry
 
@@ -79,18 +85,28 @@ class AlarmEntry(msgspec.Struct):
 
     def _call(self, reading: Alarm) -> None:
         last_t = self.t if self.called_t is None else self.called_t
-        if reading.t <= last_t:
+        known = reading.t in self.heard
+        if not known:
+            self.heard.append(reading.t)
+            del self.heard[:-EPOCHS_KEPT]
+        # Made before the one that was answered, and never heard: its unit was offline, or its clock was
+        # put back since. Nobody has answered it.
+        unheard = not known and self.called_t is not None and reading.t < self.t - REPEAT_S
+        if known or (reading.t <= last_t and not unheard):
             if self.called_t is None:
                 # The answer came by a quicker way than the call.
                 self.t = self.called_t = reading.t
                 self._say(reading.text)
             return
         new_words = bool(reading.text) and reading.text not in self.texts
-        still_sounding = reading.t - last_t <= REPEAT_S
-        if self.state == "cleared" or (self.state == "acknowledged" and (new_words or not still_sounding)):
+        still_sounding = not unheard and reading.t - last_t <= REPEAT_S
+        answered = self.state == "acknowledged" and (new_words or not still_sounding)
+        if self.state == "cleared" or answered:
             if not self.stands(reading.alarm):
                 self.texts = []
             self.state, self.t, self.acknowledged = "raised", reading.t, False
+        elif unheard:
+            return  # the one that stands is the newer one
         self.called_t = reading.t
         self._say(reading.text)
 

@@ -14,7 +14,7 @@ from backend.tracking.board import Board
 from backend.tracking.recorder import pieces, row_of
 from estimator import trackers
 from estimator.estimate import Relative
-from estimator.measurements import AnyReading
+from estimator.measurements import Alarm, AnyReading
 from estimator.trackers.base import Tracker, TrackerSettings
 
 VERSION = 4
@@ -58,6 +58,18 @@ class State(msgspec.Struct, frozen=True, array_like=True):
 
 class _Version(msgspec.Struct, frozen=True, array_like=True):
     version: int
+
+
+def _alarms_heard(readings: Sequence[AnyReading], came_t: float | None) -> Sequence[AnyReading]:
+    """Readings, with alarms from clocks that are ahead as of when they came (Unix s; None: not known)."""
+    if came_t is None or not any(isinstance(reading, Alarm) and reading.t > came_t for reading in readings):
+        return readings
+    return [
+        msgspec.structs.replace(reading, t=came_t)
+        if isinstance(reading, Alarm) and reading.t > came_t
+        else reading
+        for reading in readings
+    ]
 
 
 class IncidentFold:
@@ -107,6 +119,7 @@ class IncidentFold:
         self.whole = False
         self._asked = self._tracker
         known_t = batch.received if self._live else math.inf
+        readings = _alarms_heard(readings, batch.received if self._live else batch.sent)
         second = self._second
         if self._live and readings and second is not None and self._stood_long(second, batch.received):
             # The second may go on in what comes now, and would be recorded as of when that came.

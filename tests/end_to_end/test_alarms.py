@@ -76,6 +76,21 @@ def test_a_mayday_that_the_unit_clears_by_itself_stands_until_a_person_has_seen_
     eventually(lambda: post.frame(incident)["alarms"] == [])
 
 
+def test_a_mayday_of_a_unit_whose_clock_is_an_hour_ahead_is_heard_and_can_be_answered(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident(clock="live")
+    now = time.time()
+    heard(post, incident, base(now), responder(now, "e7-1", "E7", [3, 3, 0]))
+    commander.opens(server.url, incident)
+    heard(post, incident, alarm(now + 3600, "e7-1"))
+    eventually(lambda: re.search(r"MAYDAY E7-1 .*raised \d+ s ago", " ".join(commander.banners)))
+    commander.acknowledges()
+    eventually(lambda: "acknowledged" in commander.banners[0])
+    commander.clears()
+    eventually(lambda: commander.banners == [])
+
+
 def test_the_board_has_room_for_the_callsign_of_a_responder_in_trouble_and_stale(
     server: Server, post: Post, commander: Commander
 ) -> None:

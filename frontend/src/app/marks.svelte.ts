@@ -2,7 +2,7 @@
 import { dropsOf, type LoggedAlarm, type LoggedDrop, newBreadcrumbs } from "../domain/logged";
 import { raisedOf } from "../domain/past-alarms";
 import { type Mark, withAlarmMarks, withDropMarks } from "../domain/timeline";
-import type { DeltaMessage, FrameAlarm, FrameMessage } from "../domain/types";
+import type { DeltaMessage, FrameAlarm, FrameMessage, Incident } from "../domain/types";
 import { loggedPages } from "../sources/log";
 
 export class Marks {
@@ -30,14 +30,14 @@ export class Marks {
   }
 
   /** Reads the past out of the log of an incident; what cannot be read has no marks. */
-  async readPast(id: string, lastSeq: number): Promise<void> {
+  async readPast({ id, clock }: Incident, lastSeq: number): Promise<void> {
     this.reading.abort();
     const reading = new AbortController();
     this.reading = reading;
     const alarms: LoggedAlarm[] = [];
     const drops: LoggedDrop[] = [];
     try {
-      for await (const page of loggedPages(id, lastSeq, reading.signal)) {
+      for await (const page of loggedPages(id, lastSeq, clock, reading.signal)) {
         if (reading.signal.aborted) return;
         alarms.push(...page.flatMap((line) => line.alarms));
         drops.push(...page.flatMap((line) => line.drops));

@@ -218,9 +218,9 @@ export class Screen implements DoorOwner, ReplayOwner {
   }
 
   private liveChanged(message: FrameMessage | DeltaMessage): void {
-    if (this.pastOf === message.incident) {
+    if (this.incident !== null && this.pastOf === message.incident) {
       this.pastOf = null;
-      void this.readPast(message.incident).catch((cause) => this.door.fail(cause));
+      void this.readPast(this.incident).catch((cause) => this.door.fail(cause));
     }
     if (message.nodes.length > 0) this.earliestT = Math.min(this.earliestT, message.clock_t);
     this.standing = standingAlarms(message.alarms);
@@ -231,13 +231,10 @@ export class Screen implements DoorOwner, ReplayOwner {
   }
 
   /** What was before comes after what is now: over a slow link it takes many times as long. */
-  private async readPast(id: string): Promise<void> {
+  private async readPast(incident: Incident): Promise<void> {
     // What is in the picture by now was logged before it.
-    const marked = this.marks.readPast(
-      id,
-      Math.max(this.incident?.last_seq ?? 0, this.livePicture?.seq ?? 0),
-    );
-    await Promise.all([marked, this.fillPast(id)]);
+    const marked = this.marks.readPast(incident, Math.max(incident.last_seq, this.livePicture?.seq ?? 0));
+    await Promise.all([marked, this.fillPast(incident.id)]);
   }
 
   private async fillPast(id: string): Promise<void> {

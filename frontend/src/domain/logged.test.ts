@@ -14,7 +14,7 @@ test("the alarms of a line are found among its other readings, those set aside a
     call,
     { ...call, t: NOON + 1 },
   ];
-  const { alarms } = loggedIn(line(readings, [{ index: 2, code: "old", message: "too old" }]));
+  const { alarms } = loggedIn(line(readings, [{ index: 2, code: "old", message: "too old" }]), "recorded");
   expect(alarms.map(({ seq, node, t }) => [seq, node, t])).toEqual([[7, "ff1", NOON]]);
 });
 
@@ -23,11 +23,14 @@ test("a line of anything else says nothing", () => {
     { kind: "status", t: NOON, node: "ff1" },
     { kind: "node", t: NOON, node: "ff1", role: "responder" },
   ]);
-  expect(loggedIn(quiet)).toEqual({ alarms: [], drops: [] });
+  expect(loggedIn(quiet, "recorded")).toEqual({ alarms: [], drops: [] });
 });
 
 test("a breadcrumb was dropped when it is said to have been, not when it was introduced", () => {
-  const { drops } = loggedIn(line([crumb(NOON - 90), { kind: "drop", t: NOON, node: "b1", by: "ff1" }]));
+  const { drops } = loggedIn(
+    line([crumb(NOON - 90), { kind: "drop", t: NOON, node: "b1", by: "ff1" }]),
+    "recorded",
+  );
   expect(dropsOf(drops)).toEqual([{ node: "b1", t: NOON }]);
 });
 
@@ -37,7 +40,7 @@ test("one that is picked up and dropped again was dropped twice", () => {
 });
 
 test("of one that nobody is said to have dropped the first introduction counts, in whatever order it was read", () => {
-  const { drops } = loggedIn(line([crumb(NOON + 30), crumb(NOON), crumb(NOON + 5, "b2")]));
+  const { drops } = loggedIn(line([crumb(NOON + 30), crumb(NOON), crumb(NOON + 5, "b2")]), "recorded");
   expect(dropsOf(drops)).toEqual([
     { node: "b1", t: NOON },
     { node: "b2", t: NOON + 5 },
@@ -51,4 +54,12 @@ test("only breadcrumbs that were not in the picture are new", () => {
     aNode(),
   ];
   expect(newBreadcrumbs(lying, new Set(["b1"]))).toEqual([{ node: "b2", t: NOON }]);
+});
+
+test("an alarm from a clock that is ahead is of when it came, and no other is", () => {
+  const call = { kind: "alarm", t: NOON + 3600, node: "ff1", alarm: "mayday", state: "raised" };
+  const timesOf = (alarm: object, clock: "live" | "recorded") =>
+    loggedIn(line([alarm]), clock).alarms.map(({ t }) => t - NOON);
+  expect([timesOf(call, "live"), timesOf({ ...call, t: NOON - 5 }, "live")]).toEqual([[0], [-5]]);
+  expect(timesOf(call, "recorded")).toEqual([3600]);
 });

@@ -1,5 +1,5 @@
 /** What the lines of the log say that the timeline marks: alarms, and breadcrumbs that are dropped. */
-import type { FrameAlarm, FrameNode } from "./types";
+import type { FrameAlarm, FrameNode, Incident } from "./types";
 
 /** An alarm reading, and its place in the log. */
 export interface LoggedAlarm extends FrameAlarm {
@@ -20,6 +20,8 @@ export interface Logged {
 
 interface LogLine {
   readonly seq: number;
+  readonly received: number;
+  readonly sent?: number | null;
   readonly rejected?: readonly { index?: number | null }[];
   readonly readings: readonly Record<string, unknown>[];
 }
@@ -27,15 +29,20 @@ interface LogLine {
 /** The kinds of readings that tell of events: lines without any need not come. */
 export const EVENTS = ["alarm", "drop", "node"] as const;
 
-/** What a line says, readings that were set aside excepted. */
-export function loggedIn(line: string): Logged {
-  const { seq, rejected, readings } = JSON.parse(line) as LogLine;
+/**
+ * What a line says, readings that were set aside excepted; an alarm from a clock that is ahead, as the server has it
+ * (`backend/tracking/fold.py`), as of when it came.
+ */
+export function loggedIn(line: string, clock: Incident["clock"]): Logged {
+  const { seq, received, sent, rejected, readings } = JSON.parse(line) as LogLine;
+  const cameT = (clock === "live" ? received : sent) ?? Number.POSITIVE_INFINITY;
   const aside = new Set(rejected?.map(({ index }) => index));
   const taken = readings.filter((_, index) => !aside.has(index));
   return {
     alarms: taken
       .filter(({ kind }) => kind === "alarm")
-      .map((reading) => ({ ...(reading as unknown as FrameAlarm), seq })),
+      .map((reading) => ({ ...(reading as unknown as FrameAlarm), seq }))
+      .map((alarm) => ({ ...alarm, t: Math.min(alarm.t, cameT) })),
     drops: taken
       .filter(({ kind, role }) => kind === "drop" || (kind === "node" && role === "breadcrumb"))
       .map((reading) => reading as unknown as { kind: string; node: string; t: number })

@@ -34,3 +34,11 @@ test("an order to evacuate that was lifted is over: its words are new again", ()
 test("it does not matter which part of the log was read first", () => {
   expect(times(said("raised", 9, 3), said("cleared", 5, 2), said("raised", 0, 1))).toEqual([0, 9]);
 });
+
+test("a call of a unit whose clock was put back since its last one is a new alarm, one that comes twice is not", () => {
+  const over = [said("raised", 1000, 1), said("acknowledged", 1010, 2), said("cleared", 1020, 3)];
+  expect(times(...over, said("raised", 5, 4))).toEqual([5, 1000]);
+  const again = [said("raised", 5, 4), said("acknowledged", 1100, 5), said("cleared", 1110, 6)];
+  expect(times(...over, ...again, said("raised", 1000, 7), said("raised", 5, 8))).toEqual([5, 1000]);
+  expect(times(said("raised", 1000, 1), said("raised", 5, 2))).toEqual([1000]);
+});

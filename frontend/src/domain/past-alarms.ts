@@ -7,6 +7,8 @@ import type { FrameAlarm } from "./types";
 const REPEAT_S = 30;
 /** A unit may say something new each time it repeats itself: the first words and the newest are kept. */
 const TEXTS_KEPT = 8;
+/** Of calls heard: what comes again by another way is known by its epoch. */
+const EPOCHS_KEPT = 64;
 
 /** Of everything said of alarms, in whatever order it was read: the alarms, as they were raised. */
 export function raisedOf(said: readonly LoggedAlarm[]): FrameAlarm[] {
@@ -33,6 +35,7 @@ class Story {
   /** When it was last raised, or raised again; null: an answer came, but no call yet. */
   private calledT: number | null;
   private texts: string[] = [];
+  private heard: number[] = [];
 
   constructor(first: FrameAlarm) {
     this.kind = first.alarm;
@@ -40,6 +43,7 @@ class Story {
     this.t = first.t;
     this.acknowledged = first.state === "acknowledged";
     this.calledT = first.state === "raised" ? first.t : null;
+    if (first.state === "raised") this.heard.push(first.t);
     // What was cleared before it was heard of was never shown.
     if (first.state !== "cleared") this.raised.push(first);
     this.say(first.text);
@@ -66,7 +70,11 @@ class Story {
 
   private call(said: FrameAlarm): void {
     const lastT = this.calledT ?? this.t;
-    if (said.t <= lastT) {
+    const known = this.heard.includes(said.t);
+    if (!known) this.heard = [...this.heard, said.t].slice(-EPOCHS_KEPT);
+    // Of a unit whose clock was put back since, or that was offline.
+    const unheard = !known && this.calledT !== null && said.t < this.t - REPEAT_S;
+    if (known || (said.t <= lastT && !unheard)) {
       // The answer came by a quicker way than the call: this is when it was called.
       if (this.calledT === null) {
         this.t = this.calledT = said.t;
@@ -76,7 +84,7 @@ class Story {
       return;
     }
     const newWords = Boolean(said.text) && !this.texts.includes(said.text ?? "");
-    const sounding = said.t - lastT <= REPEAT_S;
+    const sounding = !unheard && said.t - lastT <= REPEAT_S;
     const answered = this.state === "acknowledged" && (newWords || !sounding);
     if (this.state === "cleared" || answered) {
       if (!this.stands) this.texts = [];
@@ -84,6 +92,8 @@ class Story {
       this.acknowledged = false;
       this.t = said.t;
       this.raised.push(said);
+    } else if (unheard) {
+      return;
     }
     this.calledT = said.t;
     this.say(said.text);

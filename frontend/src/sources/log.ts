@@ -1,5 +1,6 @@
 /** What the log of an incident says of events, read in the background: its newest part first. */
 import { EVENTS, type Logged, loggedIn } from "../domain/logged";
+import type { Incident } from "../domain/types";
 
 /** So many the server looks through at once: about half an hour of two crews, of which few lines come. */
 const ENTRIES_A_PAGE = 4000;
@@ -13,12 +14,14 @@ const PAUSE_MS = 100;
  *
  * @param id the incident
  * @param lastSeq its newest entry
+ * @param clock the incident's
  * @param signal ends it
  * @returns what each page holds, the newest page first; ends early where the log is larger than that
  */
 export async function* loggedPages(
   id: string,
   lastSeq: number,
+  clock: Incident["clock"],
   signal: AbortSignal,
 ): AsyncGenerator<readonly Logged[]> {
   let budget = MOST_CHARACTERS;
@@ -27,7 +30,7 @@ export async function* loggedPages(
     const page: Logged[] = [];
     for await (const line of lines(id, after, end - after, signal)) {
       budget -= line.length;
-      page.push(loggedIn(line));
+      page.push(loggedIn(line, clock));
       if (budget <= 0) return;
     }
     yield page;

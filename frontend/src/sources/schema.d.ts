@@ -244,7 +244,7 @@ export interface paths {
         put?: never;
         /**
          * Post a batch of readings
-         * @description Answered when the batch is durable on disk. `(gateway, batch)` is the idempotency key, for ever: a batch sent again gets its first answer with `duplicate: true`, even if the incident has been closed since, and changes nothing. A reading that breaks the schema, or is more than 60 s ahead of `sent` (or, where the incident's clock is live, of the server's clock), does not refuse its batch: it is listed in `rejected`, kept in the log as it came, and not given to the estimator. A batch may have no readings. Where an object names a field twice, the last one counts. The body may be gzip (`Content-Encoding: gzip`), in one member.
+         * @description Answered when the batch is durable on disk. `(gateway, batch)` is the idempotency key, for ever: a batch sent again gets its first answer with `duplicate: true`, even if the incident has been closed since, and changes nothing. A reading that breaks the schema, or is more than 60 s ahead of `sent` (or, where the incident's clock is live, of the server's clock), does not refuse its batch: it is listed in `rejected`, kept in the log as it came, and not given to the estimator. An alarm from a clock ahead is taken, and counts as of when it came. A batch may have no readings. Where an object names a field twice, the last one counts. The body may be gzip (`Content-Encoding: gzip`), in one member.
          */
         post: operations["post_telemetry"];
         delete?: never;

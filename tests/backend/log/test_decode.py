@@ -114,6 +114,8 @@ def test_a_reading_from_the_future_is_set_aside() -> None:
     assert judged([RANGE, late], now=110.4).rejected[0].index == 1
     assert judged([RANGE, late], now=110.4, sent=1_000.0).rejected[0].index == 1
     assert judged([RANGE, late]).rejected == ()
+    call = {"kind": "alarm", "t": 9_000.0, "node": "ff1", "alarm": "mayday", "state": "raised"}
+    assert [fault.index for fault in judged([call, late], now=110.4).rejected] == [1], "a call is never lost"
 
 
 def test_samples_that_end_in_the_future_are_set_aside() -> None:

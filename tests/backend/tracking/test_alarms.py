@@ -140,6 +140,16 @@ def test_an_alarm_that_comes_again_by_another_way_stays_over() -> None:
     assert shown(call, *over, raised(13.0)) == [("mayday", "raised", 13.0, None)]
 
 
+def test_a_call_of_a_unit_whose_clock_was_put_back_since_its_last_one_is_a_new_alarm() -> None:
+    over = (raised(1000.0, text=LUNAR), acknowledged(1010.0), cleared(1020.0))
+    assert shown(*over, raised(5.0)) == [("mayday", "raised", 5.0, None)]
+    assert shown(*over[:2], raised(5.0)) == [("mayday", "raised", 5.0, LUNAR)]
+    again = (raised(5.0), acknowledged(1100.0), cleared(1110.0))
+    assert shown(*over, *again, raised(1000.0), raised(5.0)) == [], "both come again by another way"
+    assert shown(*over, *again, raised(60.0)) == [("mayday", "raised", 60.0, None)]
+    assert shown(over[0], raised(5.0)) == [("mayday", "raised", 1000.0, LUNAR)], "not answered"
+
+
 def test_an_acknowledgement_that_comes_after_the_alarm_is_over_opens_nothing() -> None:
     assert shown(raised(10.0), acknowledged(11.0), cleared(12.0), acknowledged(13.0)) == []
 

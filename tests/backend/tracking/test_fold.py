@@ -55,6 +55,17 @@ def test_a_call_that_nobody_has_acknowledged_outlives_the_worker() -> None:
         assert before + fold_all(second, batches[cut:], first=cut + 1) == rows, f"cut after entry {cut}"
 
 
+def test_a_call_from_a_clock_that_is_ahead_is_of_when_it_came_and_carries_no_time_away() -> None:
+    ahead = Alarm(t=90_000.0, node="ahead", alarm="mayday", state="raised")
+    for live, moment in ((True, {"received": 1010.0}), (False, {"received": 5e6, "sent": 1010.0})):
+        fold = IncidentFold("kirchhoff", SETTINGS, live=live)
+        fold_all(fold, walk(5))
+        list(fold.fold(replace(entry(100), **moment), [ahead]))
+        call = next(alarm for alarm in fold.picture().alarms if alarm.node == "ahead")
+        assert (call.state, call.t) == ("raised", 1010.0)
+        assert fold.newest_t == 1010.0
+
+
 def test_looking_at_the_picture_changes_nothing() -> None:
     batches = walk(20)
     quiet = fold_all(IncidentFold("kirchhoff", SETTINGS), batches)
