@@ -10,7 +10,7 @@ from estimator.simulate.base import Scenario, TrueTrack, in_posting_order
 from estimator.simulate.breadcrumbs import drop_along
 from estimator.simulate.building import STOREYS, Room
 from estimator.simulate.itinerary import Itinerary
-from estimator.simulate.radio import PathLoss, Uwb
+from estimator.simulate.radio import PathLoss, Uwb, calibrated
 from estimator.simulate.team import (
     IN_THE_OFFICE,
     Kit,
@@ -26,11 +26,8 @@ from estimator.simulate.team import (
 NAME = "heavy-obstruction"
 DURATION_S = 600.0
 ROOMS = {"ff1": ("s", (6, 5, 4, 3, 1)), "ff2": ("n", (6, 5, 4, 3, 2))}
-KIT = Kit(
-    site=IN_THE_OFFICE,
-    loss=PathLoss(wall_db=7.0, sigma_db=6.0),
-    uwb=Uwb(range_m=30.0, wall_bias_m=1.0, wall_range=0.85, outlier_p=0.1, outlier_m=4.0),
-)
+LOSS = PathLoss(wall_db=7.0, sigma_db=6.0)
+UWB = Uwb(range_m=30.0, wall_bias_m=1.0, wall_range=0.85, outlier_p=0.1, outlier_m=4.0)
 
 
 def build(seed: int) -> Scenario:
@@ -42,8 +39,9 @@ def build(seed: int) -> Scenario:
     radios = radios_of(truth, crumbs)
     readings: list[AnyReading] = [introduce_base(), *(introduce(n, t, rng, "E7") for n, t in tracks.items())]
     readings += introduce_dropped(crumbs)
+    kit = Kit(site=IN_THE_OFFICE, loss=LOSS, uwb=calibrated(UWB, rng))
     for node in tracks:
-        readings += measured(node, radios, DURATION_S, rng, KIT)
+        readings += measured(node, radios, DURATION_S, rng, kit)
     reports = in_posting_order(reported(readings, "engine-7", rng))
     truth |= {crumb.node: crumb.truth for crumb in crumbs}
     return Scenario(NAME, "Heavy obstruction", "recorded", STOREYS[:1], reports, truth, DURATION_S)

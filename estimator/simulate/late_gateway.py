@@ -11,8 +11,10 @@ from estimator.simulate.base import Report, Scenario, TrueTrack, in_posting_orde
 from estimator.simulate.breadcrumbs import drop_along
 from estimator.simulate.building import STOREYS
 from estimator.simulate.itinerary import Itinerary
+from estimator.simulate.radio import calibrated
 from estimator.simulate.team import (
     IN_THE_OFFICE,
+    TYPICAL_UWB,
     Kit,
     base_track,
     introduce,
@@ -41,11 +43,13 @@ def build(seed: int) -> Scenario:
     truth = tracks | {"base": base_track(DURATION_S)}
     radios = radios_of(truth, lying)
     reports = reported([introduce_base()], "engine-7", rng)
+    lined_up = {node: introduce(node, track, rng, node[:2]) for node, track in tracks.items()}
+    kit = Kit(site=IN_THE_OFFICE, uwb=calibrated(TYPICAL_UWB, rng))
     for gateway, own in crumbs.items():
         readings: list[AnyReading] = introduce_dropped(own)
         for node in (node for node, its in CREWS.items() if its == gateway):
-            readings.append(introduce(node, tracks[node], rng, node[:2]))
-            readings += measured(node, radios, DURATION_S, rng, Kit(site=IN_THE_OFFICE))
+            readings.append(lined_up[node])
+            readings += measured(node, radios, DURATION_S, rng, kit)
         sent = reported(readings, gateway, rng)
         reports += [_held_up(report) for report in sent] if gateway == "ladder-3" else sent
     truth |= {crumb.node: crumb.truth for crumb in lying}

@@ -16,8 +16,10 @@ from estimator.simulate.breadcrumbs import drop_along, kicked
 from estimator.simulate.building import STOREYS, Room
 from estimator.simulate.itinerary import Itinerary
 from estimator.simulate.links import Radio
+from estimator.simulate.radio import Uwb, calibrated
 from estimator.simulate.team import (
     IN_THE_OFFICE,
+    TYPICAL_UWB,
     Kit,
     base_track,
     introduce,
@@ -65,10 +67,11 @@ def build(seed: int) -> Scenario:
     readings: list[AnyReading] = [introduce_base(), UAV]
     readings += [introduce(node, truth, rng, node[:2]) for node, truth in tracks.items()]
     readings += introduce_dropped(crumbs.values(), {"E7-1": "E7", "L3-1": "L3"})
-    readings += _story(burnt) + _flight(uav, tracks, rng)
+    uwb = calibrated(TYPICAL_UWB, rng)
+    readings += _story(burnt) + _flight(uav, tracks, uwb, rng)
     readings += list(pressure_readings("base", base, np.arange(0.0, DURATION_S, 5.0), rng, 0.0))
     for node in tracks:
-        readings += _worn(node, radios, rng)
+        readings += _worn(node, radios, uwb, rng)
     reports = [_report(reading, rng) for reading in readings]
     truths = tracks | {n: c.truth for n, c in crumbs.items()} | {"base": base, "uav-1": uav}
     return Scenario(NAME, "Office fire", "live", STOREYS, in_posting_order(reports), truths, DURATION_S)
@@ -118,10 +121,10 @@ def _ladder_crew(rng: np.random.Generator) -> dict[str, TrueTrack]:
     return tracks
 
 
-def _worn(node: str, radios: dict[str, Radio], rng: np.random.Generator) -> list[AnyReading]:
+def _worn(node: str, radios: dict[str, Radio], uwb: Uwb, rng: np.random.Generator) -> list[AnyReading]:
     """All that a responder's units measure, less what a silent radio could not send."""
     radio, engine = radios[node], node.startswith("E7")
-    kit = Kit(site=IN_THE_OFFICE, altitude_sigma_m=None if engine else 0.4)
+    kit = Kit(site=IN_THE_OFFICE, uwb=uwb, altitude_sigma_m=None if engine else 0.4)
     epochs = np.arange(1.0 + rng.uniform(0.0, 0.9), DURATION_S, 2.0)
     told: list[AnyReading] = []
     if engine:
@@ -132,7 +135,9 @@ def _worn(node: str, radios: dict[str, Radio], rng: np.random.Generator) -> list
     return sent + measured(node, radios, DURATION_S, rng, kit)
 
 
-def _flight(uav: TrueTrack, tracks: dict[str, TrueTrack], rng: np.random.Generator) -> list[AnyReading]:
+def _flight(
+    uav: TrueTrack, tracks: dict[str, TrueTrack], uwb: Uwb, rng: np.random.Generator
+) -> list[AnyReading]:
     """The UAV's GNSS fixes, and its ranges to those near windows on its side."""
     t_s = np.arange(0.5, DURATION_S, 1.0)
     sigma = (1.2, 1.2, 2.0)
@@ -142,7 +147,7 @@ def _flight(uav: TrueTrack, tracks: dict[str, TrueTrack], rng: np.random.Generat
         for t, (e, n, u) in zip(t_s.tolist(), fixes.tolist(), strict=True)
     ]
     for node, truth in tracks.items():
-        ranges = window_ranges("uav-1", uav, node, truth, t_s, rng)
+        ranges = window_ranges("uav-1", uav, node, truth, t_s, uwb, rng)
         readings += [r for r in ranges if node != LOST or not LOST_S[0] <= r.t < LOST_S[1]]
     return readings
 

@@ -9,7 +9,9 @@ from estimator.measurements import AnyReading
 from estimator.simulate.base import TrueTrack
 from estimator.simulate.breadcrumbs import Dropped, drop_at
 from estimator.simulate.paper_a import CORNERS_M, DROPS_M
+from estimator.simulate.radio import calibrated
 from estimator.simulate.team import (
+    TYPICAL_UWB,
     Kit,
     base_track,
     introduce,
@@ -59,6 +61,7 @@ def sensed(
         *(introduce(node, tracks[node], rng) for node in FOLLOWS_S),
     ]
     readings += introduce_dropped(crumbs)
+    kit = Kit(uwb=calibrated(TYPICAL_UWB, rng), altitude_sigma_m=None)
     for node in FOLLOWS_S:
-        readings += measured(node, radios, END_S, rng, Kit(altitude_sigma_m=None))
+        readings += measured(node, radios, END_S, rng, kit)
     return readings

@@ -38,7 +38,7 @@ def build(seed: int) -> Scenario:
     readings: list[AnyReading] = [introduce_base(), *(introduce(n, t, rng, "E7") for n, t in tracks.items())]
     readings += introduce_dropped(crumbs)
     for node in tracks:
-        readings += measured(node, radios, DURATION_S, rng, Kit(site=IN_THE_OFFICE, uwb=None))
+        readings += measured(node, radios, DURATION_S, rng, Kit(site=IN_THE_OFFICE))
     reports = in_posting_order(reported(readings, "engine-7", rng))
     truth |= {crumb.node: crumb.truth for crumb in crumbs}
     return Scenario(NAME, "Shared breadcrumbs", "recorded", STOREYS[:2], reports, truth, DURATION_S)

@@ -32,7 +32,7 @@ class Kit:
     Attributes:
         site: what stands between radios.
         loss: how signal strength falls off.
-        uwb: its UWB radio; None: it has none.
+        uwb: its UWB radio, as the incident's are calibrated; None: it has none.
         altitude_sigma_m: noise of its altimeter (m); None: it has none.
         rssi_period_s: it listens this often (s).
         range_period_s: it ranges this often (s).
@@ -40,7 +40,7 @@ class Kit:
 
     site: Site = IN_THE_OPEN
     loss: PathLoss = TYPICAL_LOSS
-    uwb: Uwb | None = TYPICAL_UWB
+    uwb: Uwb | None = None
     altitude_sigma_m: float | None = 0.4
     rssi_period_s: float = 1.0
     range_period_s: float = 2.0

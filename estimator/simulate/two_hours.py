@@ -7,8 +7,10 @@ from estimator.simulate.base import Scenario, TrueTrack, in_posting_order
 from estimator.simulate.breadcrumbs import drop_along
 from estimator.simulate.building import STOREYS, Room
 from estimator.simulate.itinerary import Itinerary
+from estimator.simulate.radio import calibrated
 from estimator.simulate.team import (
     IN_THE_OFFICE,
+    TYPICAL_UWB,
     Kit,
     base_track,
     introduce,
@@ -23,7 +25,6 @@ NAME = "two-hours"
 DURATION_S = 7200.0
 REST_S = 180.0
 NODES = ("ff1", "ff2", "ff3")
-KIT = Kit(site=IN_THE_OFFICE, rssi_period_s=2.0, range_period_s=4.0)
 
 
 def build(seed: int) -> Scenario:
@@ -35,8 +36,10 @@ def build(seed: int) -> Scenario:
     radios = radios_of(truth, crumbs)
     readings: list[AnyReading] = [introduce_base(), *(introduce(n, t, rng, "E7") for n, t in tracks.items())]
     readings += introduce_dropped(crumbs)
+    uwb = calibrated(TYPICAL_UWB, rng)
+    kit = Kit(site=IN_THE_OFFICE, uwb=uwb, rssi_period_s=2.0, range_period_s=4.0)
     for node in tracks:
-        readings += measured(node, radios, DURATION_S, rng, KIT)
+        readings += measured(node, radios, DURATION_S, rng, kit)
     reports = in_posting_order(reported(readings, "engine-7", rng))
     truth |= {crumb.node: crumb.truth for crumb in crumbs}
     return Scenario(NAME, "Two hours", "recorded", STOREYS[:2], reports, truth, DURATION_S)

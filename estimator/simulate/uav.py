@@ -1,5 +1,7 @@
 """A UAV around the office: its circle, and its ranges through windows."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from estimator.measurements import Range
@@ -24,14 +26,31 @@ def circle(end_s: float) -> TrueTrack:
 
 
 def window_ranges(
-    uav: str, flight: TrueTrack, node: str, truth: TrueTrack, t_s: FloatArray, rng: np.random.Generator
+    uav: str,
+    flight: TrueTrack,
+    node: str,
+    truth: TrueTrack,
+    t_s: FloatArray,
+    uwb: Uwb,
+    rng: np.random.Generator,
 ) -> list[Range]:
-    """Ranges from `uav` to `node` at epochs `t_s`: one outer wall counts as a window, a second one blocks."""
+    """Ranges from `uav` to `node` at epochs `t_s`: one outer wall counts as a window, a second one blocks.
+
+    Args:
+        uav: who ranges.
+        flight: its way.
+        node: who is ranged.
+        truth: that one's way.
+        t_s: when, n (s).
+        uwb: the radios that the responders carry; aloft it reaches farther, and fails more often.
+        rng: where noise comes from.
+    """
     a, b = flight.at(t_s), truth.at(t_s)
     distance = np.linalg.norm(b - a, axis=1)
     walls = np.maximum(walls_between(a, b) - 1.0, 0.0)
     seen = (walls == 0) & (distance < REACH_M)
-    measured = Uwb(range_m=REACH_M, drop_p=0.3).ranged_m(distance, walls, np.zeros(len(t_s)), rng)
+    aloft = replace(uwb, range_m=REACH_M, drop_p=0.3)
+    measured = aloft.ranged_m(distance, walls, np.zeros(len(t_s)), rng)
     return [
         Range(t=round(t, 3), a=uav, b=node, range_m=round(range_m, 3), technology="uwb")
         for t, range_m, ok in zip(t_s.tolist(), measured.tolist(), seen.tolist(), strict=True)

@@ -6,7 +6,7 @@ import pytest
 from estimator.simulate.base import static_track
 from estimator.simulate.building import floors_between, walls_between
 from estimator.simulate.links import Radio, Site, range_readings, rssi_readings
-from estimator.simulate.radio import PathLoss, Uwb
+from estimator.simulate.radio import BIAS_SIGMA_M, SCALE_SIGMA, PathLoss, Uwb, calibrated
 
 MANY = 20_000
 NONE = np.zeros(MANY)
@@ -50,6 +50,22 @@ def test_scale_and_bias_of_a_technology_are_in_every_range() -> None:
     uwb = Uwb(sigma_m=0.001, outlier_p=0.0, drop_p=0.0, scale=1.07, bias_m=0.2)
     measured = uwb.ranged_m(np.full(MANY, 20.0), NONE, NONE, np.random.default_rng(0))
     assert np.mean(measured) == pytest.approx(21.6, abs=0.001)
+
+
+def test_incidents_differ_in_how_well_their_radios_are_calibrated() -> None:
+    drawn = [calibrated(Uwb(range_m=30.0), np.random.default_rng(seed)) for seed in range(400)]
+    scales, biases = np.array([uwb.scale for uwb in drawn]), np.array([uwb.bias_m for uwb in drawn])
+    assert np.std(scales) == pytest.approx(SCALE_SIGMA, rel=0.1)
+    assert np.std(biases) == pytest.approx(BIAS_SIGMA_M, rel=0.1)
+    assert abs(scales.mean() - 1.0) < 3 * SCALE_SIGMA / 20
+    assert abs(biases.mean()) < 3 * BIAS_SIGMA_M / 20
+    assert {uwb.range_m for uwb in drawn} == {30.0}
+
+
+def test_how_well_radios_are_calibrated_changes_nothing_in_what_is_drawn_afterwards() -> None:
+    untouched, used = np.random.default_rng(1), np.random.default_rng(1)
+    calibrated(Uwb(), used)
+    assert used.normal() == untouched.normal()
 
 
 def test_a_room_is_two_walls_from_its_neighbour_over_the_corridor_unless_the_doors_are_in_line() -> None:

@@ -82,3 +82,15 @@ def test_a_mission_of_two_hours_lasts_two_hours_of_walking_and_resting() -> None
     for node in ("ff1", "ff2", "ff3"):
         assert 1_500.0 < played.truth[node].distance_m < 4_000.0
     assert len(played.readings) > 60_000
+
+
+def test_the_radios_of_an_incident_are_off_alike_and_those_of_another_otherwise() -> None:
+    off_m = []
+    for seed in range(6):
+        played = scenario("burned-breadcrumb", seed)
+        by_walker = [
+            [r for r in played.readings if isinstance(r, Range) and r.a == node] for node in ("ff1", "ff2")
+        ]
+        off_m.append([np.median([r.range_m for r in own] - distances(played, own)) for own in by_walker])
+    assert np.ptp(off_m, axis=1).max() < 0.04
+    assert np.std(off_m, axis=0).min() > 0.05
