@@ -133,7 +133,7 @@ def _warm_chain() -> None:
     add_unsure(jacobians(readings, x), place, place, place, place, np.ones(5))
     apart(readings, x)
     stretch(readings, x, no, True, no, one, one, one)
-    excess(slab, one, one)
+    excess(slab, one, one, one)
     once_a_second(one, slab, one)
     for alike in (one, np.ones((2, 2))[:, 0]):
         costs_of(one, one, place, no, alike)

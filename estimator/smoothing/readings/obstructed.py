@@ -6,7 +6,8 @@ ICUPC 1996; Chen, A non-line-of-sight error mitigation algorithm in location est
 alone do not tell it, for the map bends until they fit. What no map explains is that readings which follow
 each other on a link differ (von Neumann, Distribution of the ratio of the mean square successive difference
 to the variance, 1941). A breadcrumb that was moved makes them differ as well: which were is asked before. An
-obstruction that does not scatter is not seen here.
+obstruction that does not scatter is not seen here. On a stair a floor may be between that is near: the more
+two radios differ in height, the likelier.
 """
 
 import math
@@ -18,6 +19,7 @@ from numba import njit
 from estimator.fusion import physics
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
+from estimator.levels import STOREY_M
 
 SHARED = 0.3
 """Readings that share less of their error look through other walls: how they differ tells nothing."""
@@ -25,6 +27,8 @@ EACH = 2.0 / 3.0
 """How much a difference tells of a variance, in readings: each reading is in two of them."""
 GLITCH, GLITCH_M, GLITCHES = 0.02, 3.0, 2
 """How often a reading is odd by itself, and by how much; and how many make one difference."""
+FLOOR = 2
+"""Which of the excesses, none counted as one, is a floor's: half a metre."""
 ODD = 6.0
 """In sigmas: one that differs by more does not tell how noisy a radio is."""
 FEW, COUNTED = 50, 20.0
@@ -49,23 +53,24 @@ class Excess(NamedTuple):
     doubt_m2: Array
 
 
-def excess(link: Integers, alike: Array, residual: Array) -> Excess:
+def excess(link: Integers, alike: Array, residual: Array, steep_m: Array) -> Excess:
     """What ranges of one technology are too long by.
 
     Args:
         link: number of each one's link, m; readings of a link in order of epoch.
         alike: which number in its row of alike readings each is, m: see `fusion.learned.links`.
         residual: measured less predicted, m (m): only how it scatters on a link counts.
+        steep_m: by how much the ends of each differ in height, m (m).
     """
     rungs, counts = np.array((0.0, *physics.EXCESS_M)), np.array(physics.EXCESS_COUNTS)
-    odds = _odds(link, alike, residual, rungs, counts)
+    odds = _odds(link, alike, residual, np.minimum(steep_m / STOREY_M, 1.0), rungs, counts)
     mean = odds @ rungs
     squared = odds @ rungs**2
     return Excess(mean, squared, squared - mean**2 + (physics.EXCESS_UNSURE * mean) ** 2)
 
 
 @njit(cache=True)
-def _odds(link: Integers, alike: Array, residual: Array, rungs: Array, counts: Array) -> Array:
+def _odds(link: Integers, alike: Array, residual: Array, floor: Array, rungs: Array, counts: Array) -> Array:
     """Probability of each excess for each reading, m × rungs: the likelier of what two beginnings lead to."""
     before, kept, off = _differences(link, alike, residual)
     felt = np.flatnonzero(~np.isnan(off))
@@ -75,7 +80,7 @@ def _odds(link: Integers, alike: Array, residual: Array, rungs: Array, counts: A
         return odds
     usual = max(np.median(np.abs(off[felt])) / HALF, physics.SIGMA_FLOOR_M)
     for begin in BEGIN:
-        found, likely = _settle(before, kept, off, felt, begin * usual, rungs, counts)
+        found, likely = _settle(before, kept, off, felt, floor, begin * usual, rungs, counts)
         if likely > best:
             odds, best = found, likely
     return odds
@@ -83,11 +88,18 @@ def _odds(link: Integers, alike: Array, residual: Array, rungs: Array, counts: A
 
 @njit(cache=True)
 def _settle(
-    before: Integers, kept: Array, off: Array, felt: Integers, sigma: float, rungs: Array, counts: Array
+    before: Integers,
+    kept: Array,
+    off: Array,
+    felt: Integers,
+    floor: Array,
+    sigma: float,
+    rungs: Array,
+    counts: Array,
 ) -> tuple[Array, float]:
     """Those odds by expectation and maximisation, and how likely the differences are with them.
 
-    Learned on the way: the noise of a clear link, and how common each excess is.
+    Learned on the way: the noise of a clear link, and how common each excess is where no floor is between.
     """
     m, n = len(before), len(rungs)
     odds, share = np.zeros((m, n)), counts / counts.sum()
@@ -102,14 +114,16 @@ def _settle(
             for r in range(n):
                 # What scatters less than the radio itself is not seen.
                 seen = r == 0 or rungs[r] >= sigma
-                odds[i, r] = onward[i, r] + back[i, r] + math.log(share[r]) if seen else -math.inf
+                usual = _usual(share, floor[i], r)
+                odds[i, r] = onward[i, r] + back[i, r] + math.log(usual) if seen else -math.inf
                 most = max(most, odds[i, r])
             for r in range(n):
                 odds[i, r] = math.exp(odds[i, r] - most)
             odds[i] /= odds[i].sum()
         common, squares, clear = counts.copy(), COUNTED * sigma**2, COUNTED
         for k in felt:
-            common += odds[k]
+            for r in range(n):
+                common[r] += odds[k, r] * (1.0 - floor[k]) * share[r] / _usual(share, floor[k], r)
             if abs(off[k]) < ODD * sigma:
                 squares += odds[k, 0] * off[k] ** 2
                 clear += odds[k, 0]
@@ -121,9 +135,15 @@ def _settle(
     for k in felt:
         density = 0.0
         for r in range(n):
-            density += share[r] * math.exp(_log_density(off[k], sigma, rungs[r]))
+            density += _usual(share, floor[k], r) * math.exp(_log_density(off[k], sigma, rungs[r]))
         likely += EACH * math.log(density)
     return odds, likely
+
+
+@njit(cache=True)
+def _usual(share: Array, floor: float, rung: int) -> float:
+    """How common an excess is where there is a floor between with probability `floor`, and never nil."""
+    return float(max((1.0 - floor) * share[rung] + (floor if rung == FLOOR else 0.0), 1e-9))
 
 
 @njit(cache=True)

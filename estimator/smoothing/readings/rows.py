@@ -152,10 +152,11 @@ class Rows:
         self.shift = np.zeros(len(self.nominal))
         off = residuals(self._readings, x)
         among = self._inside & (self.pairs[:, 1] == RANGE) & ~self.through(x)
+        steep_m = np.abs(apart(self._readings, x)[:, 2])
         white, common = self._white.copy(), self._common.copy()
         for source in np.unique(self.source[:m][among]):
             at = np.flatnonzero(among & (self.source[:m] == source))
-            found = excess(self.pairs[at, 9].astype(np.int64), self.alike[at], off[at])
+            found = excess(self.pairs[at, 9].astype(np.int64), self.alike[at], off[at], steep_m[at])
             self.shift[at] = found.mean_m
             white[at] += found.scatter_m2
             common[at] += found.doubt_m2
