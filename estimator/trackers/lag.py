@@ -147,9 +147,15 @@ class Lag:
         """
         missed: dict[str, AnyFolded] = {}
         room: tuple[int, int] | None = None
+        together_t, together = math.nan, list[AnyFolded]()
         self.received += len(readings)
-        in_order = sorted(((r.until_t, r) for r in in_pieces(readings)), key=itemgetter(0))
+        in_order = [(r.until_t, r) for r in in_pieces(readings)]
+        in_order.sort(key=itemgetter(0))
         for until_t, reading in in_order:
+            if until_t == together_t:
+                # What goes for the one before goes for all of its epoch.
+                together.append(reading)
+                continue
             if self.newest_t is not None and until_t < self.newest_t - self.lag_s:
                 if not isinstance(reading, Samples) or reading.last:
                     node = names_of(reading)[0]
@@ -161,7 +167,8 @@ class Lag:
             if room != (tick, now):
                 room = tick, now
                 self._make_room(tick, now)
-            self._readings[tick].append(reading)
+            together_t, together = until_t, self._readings[tick]
+            together.append(reading)
         for node, newest in missed.items():
             text = _too_late(self.late[node], self.lag_s) + self._why_late(newest.until_t)
             self._loose.append(Notice(code="too_late", t=newest.t, node=node, text=text))
