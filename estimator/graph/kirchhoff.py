@@ -23,7 +23,8 @@ class Kirchhoff:
     """Dense L, b and reference x over keyed blocks; storage grows by doubling.
 
     Attributes:
-        starts: first row of each block, in the order of the rows.
+        starts: first row of each block, in the order of the rows; copies share it, so it is never changed
+            but replaced.
         size: rows in use.
     """
 
@@ -97,7 +98,7 @@ class Kirchhoff:
     def copy(self) -> Self:
         """An independent copy."""
         twin = object.__new__(type(self))
-        twin.starts, twin.size, twin._firsts = dict(self.starts), self.size, self._firsts
+        twin.starts, twin.size, twin._firsts = self.starts, self.size, self._firsts
         twin._matrix, twin._vector = self._matrix.copy(), self._vector.copy()
         twin._reference = self._reference.copy()
         return twin
@@ -125,7 +126,7 @@ class Kirchhoff:
         self._vector[start:end] = 0.0
         self._reference[start:end] = reference
         self._matrix[range(start, end), range(start, end)] = [s**-2 for s in sigma]
-        self.starts[variable] = start
+        self.starts = {**self.starts, variable: start}
         self.size, self._firsts = end, {}
 
     def _grow(self, capacity: int) -> None:

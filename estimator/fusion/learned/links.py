@@ -31,7 +31,8 @@ class Links:
 
     Attributes:
         numbers: the row of each link, which is its number in the ledger as well, by the technology that its
-            noise is learned for and the names of both ends, in order.
+            noise is learned for and the names of both ends, in order; copies share it, so it is never changed
+            but replaced.
     """
 
     def __init__(self, numbers: dict[tuple[str, str, str], int] | None = None, table: Array = NONE) -> None:
@@ -40,7 +41,7 @@ class Links:
 
     def copy(self) -> Self:
         """An independent copy."""
-        return type(self)(dict(self.numbers), self._table.copy())
+        return type(self)(self.numbers, self._table.copy())
 
     @property
     def table(self) -> Array:
@@ -52,7 +53,8 @@ class Links:
         link = (source, a, b) if a < b else (source, b, a)
         found = self.numbers.get(link)
         if found is None:
-            found = self.numbers[link] = len(self.numbers)
+            found = len(self.numbers)
+            self.numbers = {**self.numbers, link: found}
             if found == len(self._table):
                 self._table = np.concatenate([self._table, np.tile(NEW, (found + SPARE, 1))])
         return found

@@ -204,3 +204,13 @@ def test_the_first_rows_of_a_kind_of_blocks_follow_what_enters_and_leaves() -> N
     assert graph.firsts("unit").tolist() == [3, 9, 12]
     assert twin.firsts("unit").tolist() == [0, 6]
     assert graph.firsts("velocity").tolist() == []
+
+
+def test_copies_share_where_blocks_stand_until_one_of_them_takes_another_in() -> None:
+    graph = Kirchhoff()
+    graph.add_node(node("a"), np.zeros(3), (1.0,) * 3)
+    twin = graph.copy()
+    assert twin.starts is graph.starts
+    twin.add_node(node("b"), np.zeros(3), (1.0,) * 3)
+    assert list(graph.starts) == [node("a")]
+    assert list(twin.starts) == [node("a"), node("b")]
