@@ -21,6 +21,8 @@ from estimator.smoothing.changes.elsewhere import GAIN, USUAL_COST
 from estimator.smoothing.changes.moved import Moved, moved_nodes
 from estimator.smoothing.extent import spacing_s as usual_s
 from estimator.smoothing.images.climbed import climbed
+from estimator.smoothing.images.otherwise import Mode
+from estimator.smoothing.images.worn import worn
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.learning.delays import delays, distrust, doubted
 from estimator.smoothing.learning.learn import learn
@@ -74,7 +76,7 @@ def first_pass(
     return state
 
 
-def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
+def solve_whole(state: FusionState) -> tuple[Problem, Solved, list[Mode]]:
     """Solve everything, learning on the way how noisy each unit is.
 
     Which breadcrumbs were moved, and then which steps were reported wrongly, is asked again with all that is
@@ -86,6 +88,9 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
 
     Args:
         state: the fusion after all readings, with a complete ledger; the solution's may be a copy of it.
+
+    Returns:
+        The problem, its solution, and others by how units may be worn.
     """
     problem, solved = _solved(state)
     for _ in range(DELAYS):
@@ -97,7 +102,7 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved]:
         state = problem.layout.state
         distrust(state, found)
         problem, solved = _solved(state)
-    return problem, solved
+    return worn(problem, solved, _problem, RESTING)
 
 
 def _solved(state: FusionState) -> tuple[Problem, Solved]:
@@ -130,6 +135,7 @@ def _begun(state: FusionState) -> tuple[Problem, Solved]:
     problem = _problem(state)
     solved = problem.solve(problem.layout.start(), SLACKS_M, resting=LEARNING_RESTING)
     problem, solved = climbed(problem, solved, _problem, LEARNING_RESTING)
+    problem, solved, _ = worn(problem, solved, _problem, LEARNING_RESTING, -math.inf)
     return _settled(problem, solved, LEARNING_RESTING)
 
 

@@ -41,6 +41,7 @@ from estimator.smoothing.images.otherwise import otherwise
 from estimator.smoothing.images.solutions import SLACKS_M
 from estimator.smoothing.images.tried import SAME_RAD
 from estimator.smoothing.images.turns import reports_from, to_other_sides
+from estimator.smoothing.images.worn import worn
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.learning.learn import learn
 from estimator.smoothing.problem.solve import Problem
@@ -153,13 +154,14 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         start = _solved(begun, begun.layout.start(), solved_t)
         if hinted(begun, start):
             begun, start = climbed(begun, start, partial(_problem, since=since), RESTING)
+        begun, start, others = worn(begun, start, partial(_problem, since=since), RESTING, solved_t)
         layout, judged = begun.layout, likeliest(begun, start)
         problem, solved, modes, state.exposed, asked = judged
         trimmed = trim(problem, solved)
         left = solved.chain.remainder(layout.length - 1)
         left = turned(left, layout, problem.pivot_m, problem.first(solved.x), solved.x)
         settle(state, layout, solved, left.matrix)
-        for name, images in otherwise(layout, solved.x, modes).items():
+        for name, images in otherwise(layout, solved.x, [*modes, *others]).items():
             state.nodes[name] = replace(state.nodes[name], otherwise=images)
         found = learn(state, problem, solved)
         hearing = Hearing(problem, solved)

@@ -39,13 +39,13 @@ class BatchSmoother:
         if not ordered:
             return {}
         state = first_pass(ordered, self.settings.origin_wgs84)
-        problem, solved = solve_whole(state)
+        problem, solved, others = solve_whole(state)
         problem, solved, modes, *_ = likeliest(problem, solved, WHOLE)
         solved.chain.solve()
         covariances = solved.chain.covariances()
         swing(problem.layout, solved, covariances)
         doubt_scales(problem.layout, solved, covariances)
-        admit(problem.layout, solved.x, modes, covariances)
+        admit(problem.layout, solved.x, [*modes, *others], covariances)
         return tracks(problem.layout, solved.x, *covariances, lifetimes(ordered))
 
     def evidence(self, readings: Sequence[AnyReading], node: str) -> Evidence | None:
@@ -57,9 +57,9 @@ class BatchSmoother:
         state = first_pass(in_order(readings), self.settings.origin_wgs84)
         if state.nodes[node].mode == "fixed" or not len(state.ledger.table("begins")):
             return None
-        problem, solved = solve_whole(state)
+        problem, solved, others = solve_whole(state)
         problem, solved, modes, *_ = likeliest(problem, solved, WHOLE)
-        return explain(problem.layout.state, problem, solved, modes, node)
+        return explain(problem.layout.state, problem, solved, [*modes, *others], node)
 
     def advice(self, readings: Sequence[AnyReading], node: str) -> Advice | None:
         """What would help a node most; see `estimator.smoothing.results.advice.advise`.

@@ -11,6 +11,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion.entering.introduce import initial_turn, turn_sigma
+from estimator.fusion.entering.worn import RIGHT, reported
 from estimator.fusion.learned.calibration import UNTOLD
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -79,7 +80,7 @@ def begin_frame(state: FusionState, reading: Displacement) -> None:
     elif before_rad is not None and faced_rad is not None:
         # Nobody tells: he rather goes on as he went than not.
         frame_rad = before_rad - faced_rad
-    state.nodes[node.node] = replace(node, raw=raw, changed=None, frame_rad=within_pi(frame_rad))
+    state.nodes[node.node] = replace(node, raw=raw, changed=None, frame_rad=within_pi(frame_rad), worn=RIGHT)
 
 
 def _ambiguous(told_rad: float, faced_rad: float) -> bool:
@@ -98,6 +99,7 @@ def _doubt(state: FusionState, node: NodeState, variances: tuple[float, float, f
 
 def framed(node: NodeState, reading: Displacement) -> Displacement:
     """A displacement in the frame that ψ counts from."""
+    reading = reported(node, reading)
     if node.frame_rad == 0.0:
         return reading
     east, north, up = reading.delta_m

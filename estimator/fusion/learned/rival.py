@@ -29,6 +29,9 @@ LEAST, MOST = -1.0, 12.0
 LEAST_ALL = -2.0
 RARE = -4.0
 """Log odds of a unit that is no good, beforehand: one in 55."""
+DOUBTED, LED_ASTRAY = -3.0, 4.0
+"""Log odds up to which nothing speaks against a unit's way; and times that its variance is what was assumed:
+it may be its radio, or a clock, that is wrong."""
 EXCESS_M = 2.0
 """What an obstructed range is too long by on average: exponentially distributed (decision 0009)."""
 WILD, WILD_M = 0.1, 30.0

@@ -44,6 +44,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         frame_rad: how the frame of its unit is turned against the one that ψ counts from (rad).
         apart: its unit is not where its radio is.
         joined_t: when its unit was where its radio is again (s).
+        worn: how its unit is taken to be worn, see `entering.worn.Worn`.
         first_heading_rad: heading that its unit reported first, in the unit's frame.
         unit_heading_rad: newest heading that its unit reported, in the unit's frame.
         speed_mps: horizontal speed by its newest displacement.
@@ -98,6 +99,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     rival: Rival | None = None
     apart: Apart | None = None
     joined_t: float = -math.inf
+    worn: tuple[bool, float] = (False, 0.0)
 
     @property
     def position(self) -> Variable:

@@ -63,7 +63,12 @@ def compare(state: FusionState, table: Array, epochs: Array) -> None:
 
 def _asked(node: NodeState) -> bool:
     """Whether a unit leads its bearer, and one place is all that it may have led him to."""
-    if node.turned or node.otherwise or node.apart is not None or node.unit_t is None:
+    if (
+        node.turned
+        or any(o.since_t < math.inf for o in node.otherwise)
+        or node.apart is not None
+        or node.unit_t is None
+    ):
         return False
     return node.pose_t <= node.unit_t + SILENT_S
 

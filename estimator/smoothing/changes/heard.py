@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.fusion import physics
+from estimator.fusion.learned.rival import DOUBTED, LED_ASTRAY
 from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.motion.silence import SILENT_S
@@ -19,10 +20,6 @@ from estimator.smoothing.problem.solved import Solved
 
 DISAGREEING = 0.75
 """Of ranges that agree with a way most are good ones."""
-LED_ASTRAY = 4.0
-"""Times that a unit's variance is what was assumed: it may be its radio, or a clock, that is wrong."""
-DOUBTED = -3.0
-"""Log odds of its rival (`fusion.learned.rival`) up to which nothing speaks against a unit's way."""
 OUTLIER = 0.1
 """Probability of being good below which a range is one."""
 LATELY_S = 20.0

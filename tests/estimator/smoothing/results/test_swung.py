@@ -51,7 +51,7 @@ def ranged_from_above() -> list[AnyReading]:
 @pytest.mark.parametrize("readings", [incident(math.pi), incident(0.3), ranged_from_above()])
 def test_places_and_the_next_ones_are_told_of_one_distribution(readings: list[AnyReading]) -> None:
     """So whatever lies between two keyframes has a covariance."""
-    problem, solved = solve_whole(first_pass(in_order(readings), None))
+    problem, solved, _ = solve_whole(first_pass(in_order(readings), None))
     layout = problem.layout
     solved.chain.solve()
     found = solved.chain.covariances()

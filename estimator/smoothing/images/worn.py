@@ -1,0 +1,205 @@
+"""Whose unit is worn the wrong way round: mirrored, or turned by a right angle.
+
+A unit that is mirrored leads its bearer along a mirrored way, and what he drops lies there: a world that is
+as consistent as the true one, until something off its axis contradicts it; and then somebody else's good unit
+may be blamed. No step of a solution leads from one to the other. So where anything speaks against a unit, a
+window is also solved with what each of them reports the other way round.
+"""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from msgspec.structs import replace
+
+from estimator.fusion.entering.worn import RIGHT, wear, worn_of
+from estimator.fusion.images import Image
+from estimator.fusion.learned.rival import DOUBTED, LED_ASTRAY
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.state import FusionState
+from estimator.graph.dense import Array
+from estimator.smoothing.images.earlier import LEAST
+from estimator.smoothing.images.guesses import SLACKS_M, Guess, guesses
+from estimator.smoothing.images.otherwise import Mode
+from estimator.smoothing.keyframes.layout import Layout, Walk
+from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.solved import Solved
+
+CLEARER, OPEN = 20.0, 2.0
+"""A unit is taken to be worn another way where that is likelier by this much (log odds): powers share their
+errors, and a window bent otherwise has made 18 of none. Of those that are, another one where by this much."""
+GONE_M = 5.0
+"""Who has gone less has hardly told how his unit is worn."""
+MOST, SOME = 4, 3
+"""Of so many units it is asked each time; of so many in the first minute where nothing speaks."""
+FIRST_S, LONGER, YOUNG_S = 6.0, 1.5, 60.0
+"""Then it is asked when a window is half as long again, from so long on; of one unit when it is old."""
+ALWAYS = math.inf
+"""Since when somebody's way would be another one whose unit is worn another way: its prior tells of it."""
+
+
+def worn(
+    problem: Problem,
+    solved: Solved,
+    build: Callable[[FusionState], Problem],
+    resting: float,
+    asked_t: float | None = None,
+) -> tuple[Problem, Solved, list[Mode]]:
+    """Take units to be worn as is likeliest, where anything speaks against one.
+
+    Args:
+        problem: of a window; its state is told how units are worn.
+        solved: its solution.
+        build: makes the same problem of another state.
+        resting: see `Problem.solve`.
+        asked_t: when it was last solved (s): where nothing speaks against anybody's unit it is asked by the
+            clock, whether another way fits nearly as well; None: it is not asked then.
+
+    Returns:
+        The window, its solution, and its others.
+    """
+    state, layout = problem.layout.state, problem.layout
+    asked = asked_of(problem, asked_t)
+    numbers = [layout.walks[i].number for i in asked]
+    found = guesses(state, numbers, solved.x, build, resting, _speak(state)) if asked else []
+    if not found:
+        return problem, solved, _kept(layout, solved.x)
+    known = found[0]
+    best = min(found, key=lambda guess: guess.cost)
+    # As long as all units seem to be worn the right way, nothing of this is told.
+    wrong = any(worn_of(state.life(number)) != RIGHT for number in numbers)
+    if best.cost > known.cost - (OPEN if wrong else CLEARER):
+        best = known
+    if best is known and not wrong:
+        return problem, solved, _kept(layout, solved.x)
+    less = np.array([best.cost - guess.cost for guess in found])
+    share = np.exp(less - less.max())
+    share /= share.sum()
+    if best is not known:
+        _take(state, best)
+        problem = build(state)
+        solved = problem.solve(best.x, SLACKS_M[1:], resting=resting)
+    modes = [
+        _mode(guess, best, each)
+        for guess, each in zip(found, share.tolist(), strict=True)
+        if guess is not best and each > LEAST
+    ]
+    if not modes:
+        _tell(state)
+    return problem, solved, modes
+
+
+def asked_of(problem: Problem, asked_t: float | None) -> list[int]:
+    """Walks of whose units it is asked how they are worn, by index.
+
+    Those are asked about first against whom most speaks; where nothing speaks against anybody, some by the
+    clock, whenever the window is half as long again.
+
+    Args:
+        problem: of a window.
+        asked_t: when it was last solved (s); None: it is not asked by the clock.
+    """
+    layout = problem.layout
+    state, known = layout.state, () if problem.prior is None else problem.prior.keys
+    speaks = _speak(state)
+    begun_t = float(layout.grid[0])
+    if not speaks and (asked_t is None or _times(asked_t - begun_t) >= _times(state.newest_t - begun_t)):
+        return []
+    found = [
+        i
+        for i, walk in enumerate(layout.walks)
+        if _askable(state.life(walk.number), walk)
+        and ("walk", walk.number) not in known
+        and _told_of(problem, walk)
+    ]
+    if not speaks and asked_t is not None:
+        first = int(state.newest_t) % max(len(found), 1)
+        return (found[first:] + found[:first])[
+            : SOME if min(asked_t, state.newest_t - YOUNG_S) < begun_t else 1
+        ]
+    found.sort(key=lambda i: -_odds(layout.walks[i].node))
+    return found[:MOST]
+
+
+def _told_of(problem: Problem, walk: Walk) -> bool:
+    """Whether anything tells of a way beside what its bearer has dropped, and the base where he set out."""
+    state, rows = problem.layout.state, problem.rows
+    drops = state.ledger.table("drops")
+    own = {walk.number, *drops[drops[:, 2] == walk.number, 1].astype(int).tolist()}
+    own |= {node.index for node in state.nodes.values() if node.mode == "fixed"}
+    told = rows.of([walk.number])
+    strange = ~np.isin(rows.pairs[:, 2:4], list(own)).all(axis=1)
+    fixed = rows.singles[:, 2] < 2.0
+    return bool((told & np.concatenate([strange, fixed, np.zeros(3 * len(rows.drops), dtype=bool)])).any())
+
+
+def _times(since_s: float) -> int:
+    """How often it has been asked of a window by the clock that began so long ago (s)."""
+    return math.floor(math.log(max(since_s / FIRST_S, 1.0), LONGER))
+
+
+def _is_open(node: NodeState) -> bool:
+    """Whether it is not decided how somebody's unit is worn, or another one's who takes him along."""
+    return any(other.since_t == ALWAYS for other in node.otherwise)
+
+
+def _speak(state: FusionState) -> bool:
+    """Whether anything speaks against anybody's unit, or did when it was asked last."""
+    return any(
+        node.mode == "unit" and (_odds(node) > DOUBTED or node.walk_factors[0] > LED_ASTRAY or _is_open(node))
+        for node in state.nodes.values()
+    )
+
+
+def _odds(node: NodeState) -> float:
+    return -math.inf if node.rival is None else node.rival.odds
+
+
+def _askable(node: NodeState, walk: Walk) -> bool:
+    if walk.way is None or node.index != walk.number or node.mode != "unit" or node.raw:
+        return False
+    return node.apart is None and node.frame_rad == 0.0 and node.changed is None and node.way_m > GONE_M
+
+
+def _take(state: FusionState, guess: Guess) -> None:
+    """Go on with units worn as is likeliest: what was learned of anybody a wrong world has made."""
+    for number, way in guess.worn:
+        wear(state, number, way)
+    state.noise = {}
+    for node in list(state.nodes.values()):
+        if node.mode == "unit":
+            state.keep(replace(node, walk_factors=(1.0, 1.0), rival=None))
+
+
+def _mode(guess: Guess, best: Guess, share: float) -> Mode:
+    """Another guess as another solution of the window."""
+    number, way = (*guess.worn, *best.worn)[0]
+    cosine, sine = math.cos(way.turned_rad), math.sin(way.turned_rad)
+    return Mode(number, share, guess.x, ALWAYS, Image(cosine, sine, -1.0 if way.mirrored else 1.0), {})
+
+
+def _kept(layout: Layout, x: Array) -> list[Mode]:
+    """What was open when it was asked last, where it is not asked now: as far off as then."""
+    size, now = layout.length * layout.width, (layout.length - 1) * layout.width
+    at = {walk.number: now + STATES * i for i, walk in enumerate(layout.walks)}
+    at |= {number: size + start for number, start in layout.stands.items()}
+    found: dict[tuple[int, float, Image], Mode] = {}
+    for node in layout.state.nodes.values():
+        for other in node.otherwise if node.index in at else ():
+            if other.since_t == ALWAYS:
+                mode = Mode(other.of, other.share, x.copy(), ALWAYS, other.way, {})
+                mode = found.setdefault(other.mode, mode)
+                own = slice(at[node.index], at[node.index] + 2)
+                mode.x[own] = other.image.of(x[own])
+    return list(found.values())
+
+
+def _tell(state: FusionState) -> None:
+    """Say whose units seem to be worn the wrong way round."""
+    for node in list(state.nodes.values()):
+        way = worn_of(node)
+        if way != RIGHT:
+            how = "mirrored" if way.mirrored else f"turned by {round(math.degrees(way.turned_rad)) % 360}°"
+            text = f"the unit of {node.node} seems to be worn the wrong way round: what it reports is {how}"
+            state.say("conflict", state.newest_t, node.node, text, once=f"{node.node} worn {how}")

@@ -1,0 +1,114 @@
+"""Units worn the wrong way round, whose bearers drop breadcrumbs themselves (decision 0060)."""
+
+import math
+
+import numpy as np
+import pytest
+
+from estimator.estimate import Vector3
+from estimator.fusion.entering.worn import RIGHT, Worn
+from estimator.graph.dense import Array
+from estimator.measurements import AnyReading
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.drop import Drop
+from estimator.measurements.node import Node
+from estimator.measurements.range import Range
+from estimator.trackers.batch import BatchSmoother
+from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.ellipses import outside
+from tests.estimator.trackers.entry import BASE, shown
+
+SECONDS, APART_M, CRUMBS = 120, 14.0, 5
+MIRRORED, QUARTER = Worn(True), Worn(False, 0.5 * math.pi)
+ALL = ("ff1", "ff2", "ff3")
+
+
+def entry(worn: Worn, seed: int, names: tuple[str, ...] = ALL) -> tuple[list[AnyReading], dict[str, Array]]:
+    """They walk from goal to goal, two drop breadcrumbs, all range to these; the unit of ff1 is worn so."""
+    chance, readings = np.random.default_rng(seed), list[AnyReading]([BASE])
+    at = {name: np.array([0.0, 0.7 * i]) for i, name in enumerate(names)}
+    for name, (east, north) in at.items():
+        readings.append(_node(name, (float(east), float(north), 0.0)))
+    goal, way, crumbs = dict(at), {name: [place] for name, place in at.items()}, dict[str, Array]()
+    for second in range(1, SECONDS + 1):
+        t = float(second)
+        for name in names:
+            if np.hypot(*(goal[name] - at[name])) < 1.0:
+                goal[name] = chance.uniform(-20.0, 20.0, 2)
+            off_m = goal[name] - at[name]
+            step_m = off_m / max(1.0, float(np.hypot(*off_m)))
+            at[name] = at[name] + step_m
+            way[name].append(at[name])
+            said = worn.of(*step_m) if name == "ff1" else step_m
+            east, north = (np.array(said) + chance.normal(0.0, 0.03, 2)).tolist()
+            readings.append(Displacement(t=t, node=name, delta_m=(east, north, 0.0)))
+            dropped = sum(crumb.startswith(name) for crumb in crumbs)
+            if name != "ff3" and dropped < CRUMBS and second >= APART_M * (dropped + 1):
+                crumbs[f"{name}-{dropped}"] = at[name]
+                readings.append(Drop(t=t, node=f"{name}-{dropped}", by=name))
+        for name in names:
+            for crumb, place in crumbs.items():
+                if chance.random() < 0.5:
+                    range_m = abs(float(np.hypot(*(at[name] - place)) + chance.normal(0.0, 0.1)))
+                    readings.append(Range(t=t, a=name, b=crumb, range_m=range_m, technology="uwb"))
+    return readings, {name: np.array(places) for name, places in way.items()}
+
+
+def _node(name: str, place_m: Vector3) -> Node:
+    return Node(t=0.0, node=name, role="responder", position_m=place_m, sigma_m=0.3, heading_sigma_rad=0.05)
+
+
+def followed(readings: list[AnyReading], way: dict[str, Array]) -> tuple[dict[str, int], list[str]]:
+    """For how many seconds each is shown elsewhere, and sure of it; and what is said of units."""
+    tracker, wrong, said = KirchhoffTracker(), dict.fromkeys(way, 0), list[str]()
+    for second in range(SECONDS + 1):
+        tracker.fold([r for r in readings if r.t == second])
+        said += [notice.text for notice in tracker.take_notices() if "worn the wrong way" in notice.text]
+        for name, places in way.items():
+            found = shown(tracker, name)
+            wrong[name] += outside(found.position_m, found.covariance_m2, places[second]) > 13.8
+    return wrong, said
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("worn", [MIRRORED, QUARTER])
+def test_a_unit_worn_the_wrong_way_round_is_found_and_no_good_one_is_blamed(worn: Worn, seed: int) -> None:
+    """Its bearer walks for some ten seconds before there is anything to hear."""
+    wrong, said = followed(*entry(worn, seed))
+    assert wrong["ff1"] < 30
+    assert wrong["ff2"] + wrong["ff3"] <= 3
+    assert len(said) == 1
+    assert "the unit of ff1" in said[0]
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_units_worn_the_right_way_are_believed(seed: int) -> None:
+    wrong, said = followed(*entry(RIGHT, seed))
+    assert sum(wrong.values()) == 0
+    assert said == []
+
+
+def test_of_two_units_that_mirror_each_other_nobody_knows_which_is_wrong_and_none_is_sure() -> None:
+    readings, way = entry(MIRRORED, 1, ("ff1", "ff2"))
+    wrong, said = followed(readings, way)
+    assert wrong["ff1"] < 40
+    assert wrong["ff2"] <= 3
+    assert said == []
+
+
+@pytest.mark.parametrize("worn", [MIRRORED, QUARTER])
+def test_the_smoothed_way_of_who_wears_a_unit_wrongly_is_right_from_its_beginning(worn: Worn) -> None:
+    readings, way = entry(worn, 0)
+    for name, track in BatchSmoother().smooth(readings).items():
+        off_m = [math.dist(p.position_m[:2], way[name][round(p.t)]) for p in track if name in way]
+        assert max(off_m, default=0.0) < 1.5
+
+
+def test_what_a_unit_is_found_to_be_worn_is_known_after_a_restart() -> None:
+    readings, _ = entry(MIRRORED, 0)
+    tracker = KirchhoffTracker()
+    tracker.fold([r for r in readings if r.t <= 60.0])
+    again = KirchhoffTracker.restore(tracker.snapshot())
+    for one in (tracker, again):
+        one.fold([r for r in readings if r.t > 60.0])
+    assert again.estimates() == tracker.estimates()
