@@ -11,10 +11,12 @@ from collections.abc import Callable
 
 import numpy as np
 from msgspec.structs import replace
+from numpy.typing import NDArray
 
 from estimator.fusion.entering.worn import RIGHT, wear, worn_of
 from estimator.fusion.images import Image
 from estimator.fusion.learned.rival import DOUBTED, LED_ASTRAY
+from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
@@ -27,14 +29,18 @@ from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
 
 CLEARER, OPEN = 20.0, 2.0
-"""A unit is taken to be worn another way where that is likelier by this much (log odds): powers share their
-errors, and a window bent otherwise has made 18 of none. Of those that are, another one where by this much."""
+"""A unit is taken to be worn another way where that is likelier by this much (log odds): a window that was
+bent otherwise has made 18 of none. Where it is open, by this much. Powers share their errors, and have made
+37 of none: by them alone it is open, and no more."""
 GONE_M = 5.0
 """Who has gone less has hardly told how his unit is worn."""
 MOST, SOME = 4, 3
-"""Of so many units it is asked each time; of so many in the first minute where nothing speaks."""
-FIRST_S, LONGER, YOUNG_S = 6.0, 1.5, 60.0
-"""Then it is asked when a window is half as long again, from so long on; of one unit when it is old."""
+"""Of so many units it is asked where anything speaks against one; of so many where not."""
+FIRST_S, LONGER, LITTLE_LONGER, YOUNG_S = 6.0, 1.5, 1.15, 60.0
+"""It is asked when a window is half as long again, from so long on; a little longer where anything speaks. Of
+one that is no longer young nothing is asked where nothing even hints at it: each way costs a solution."""
+HINTED = -4.5
+"""Log odds from which on something hints at a bad unit."""
 ALWAYS = math.inf
 """Since when somebody's way would be another one whose unit is worn another way: its prior tells of it."""
 
@@ -68,11 +74,15 @@ def worn(
     known = found[0]
     best = min(found, key=lambda guess: guess.cost)
     # As long as all units seem to be worn the right way, nothing of this is told.
-    wrong = any(worn_of(state.life(number)) != RIGHT for number in numbers)
-    if best.cost > known.cost - (OPEN if wrong else CLEARER):
+    told = any(worn_of(state.life(number)) != RIGHT or _is_open(state.life(number)) for number in numbers)
+    if best.cost > known.cost - (OPEN if told else CLEARER):
         best = known
-    if best is known and not wrong:
+    if best is known and not told:
         return problem, solved, _kept(layout, solved.x)
+    if not all(_ranged(problem, number) for number, _ in best.worn):
+        # Powers alone may say that it is open, and no more.
+        found = [guess._replace(cost=max(guess.cost, known.cost)) for guess in found]
+        best = known = found[0]
     less = np.array([best.cost - guess.cost for guess in found])
     share = np.exp(less - less.max())
     share /= share.sum()
@@ -93,18 +103,24 @@ def worn(
 def asked_of(problem: Problem, asked_t: float | None) -> list[int]:
     """Walks of whose units it is asked how they are worn, by index.
 
-    Those are asked about first against whom most speaks; where nothing speaks against anybody, some by the
-    clock, whenever the window is half as long again.
+    It is asked by the clock, again when the window has become longer. Those are asked about first against
+    whom most speaks; where nothing even hints at anybody some are, while the window is young.
 
     Args:
         problem: of a window.
-        asked_t: when it was last solved (s); None: it is not asked by the clock.
+        asked_t: when it was last solved (s); None: it is asked only where anything speaks against a unit.
     """
     layout = problem.layout
     state, known = layout.state, () if problem.prior is None else problem.prior.keys
-    speaks = _speak(state)
-    begun_t = float(layout.grid[0])
-    if not speaks and (asked_t is None or _times(asked_t - begun_t) >= _times(state.newest_t - begun_t)):
+    speaks, hinted = _speak(state), _speak(state, HINTED)
+    length_s = state.newest_t - float(layout.grid[0])
+    if asked_t is None:
+        due = speaks
+    else:
+        longer = LITTLE_LONGER if speaks else LONGER
+        before_s = length_s - (state.newest_t - asked_t)
+        due = _times(before_s, longer) < _times(length_s, longer) and (hinted or length_s < YOUNG_S)
+    if not due:
         return []
     found = [
         i
@@ -113,30 +129,40 @@ def asked_of(problem: Problem, asked_t: float | None) -> list[int]:
         and ("walk", walk.number) not in known
         and _told_of(problem, walk)
     ]
-    if not speaks and asked_t is not None:
-        first = int(state.newest_t) % max(len(found), 1)
-        return (found[first:] + found[:first])[
-            : SOME if min(asked_t, state.newest_t - YOUNG_S) < begun_t else 1
-        ]
+    # Of those against whom nothing speaks, others each time.
+    first = int(state.newest_t) % max(len(found), 1)
+    found = found[first:] + found[:first]
     found.sort(key=lambda i: -_odds(layout.walks[i].node))
-    return found[:MOST]
+    return found[: MOST if speaks else SOME]
 
 
 def _told_of(problem: Problem, walk: Walk) -> bool:
     """Whether anything tells of a way beside what its bearer has dropped, and the base where he set out."""
+    pairs, fixed, _ = _strange(problem, walk.number)
+    return bool(pairs.any() or fixed.any())
+
+
+def _ranged(problem: Problem, number: int) -> bool:
+    """Whether more than powers tell of a way so."""
+    pairs, fixed, kinds = _strange(problem, number)
+    return bool(fixed.any() or (kinds[pairs] != RSSI).any())
+
+
+def _strange(problem: Problem, number: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_], Array]:
+    """Which readings of pairs and which fixes tell of a way beside its own; and the kinds of the former."""
     state, rows = problem.layout.state, problem.rows
     drops = state.ledger.table("drops")
-    own = {walk.number, *drops[drops[:, 2] == walk.number, 1].astype(int).tolist()}
+    own = {number, *drops[drops[:, 2] == number, 1].astype(int).tolist()}
     own |= {node.index for node in state.nodes.values() if node.mode == "fixed"}
-    told = rows.of([walk.number])
+    told = rows.of([number])
     strange = ~np.isin(rows.pairs[:, 2:4], list(own)).all(axis=1)
-    fixed = rows.singles[:, 2] < 2.0
-    return bool((told & np.concatenate([strange, fixed, np.zeros(3 * len(rows.drops), dtype=bool)])).any())
+    m, n = len(rows.pairs), len(rows.singles)
+    return told[:m] & strange, told[m : m + n] & (rows.singles[:, 2] < 2.0), rows.pairs[:, 1]
 
 
-def _times(since_s: float) -> int:
+def _times(since_s: float, longer: float) -> int:
     """How often it has been asked of a window by the clock that began so long ago (s)."""
-    return math.floor(math.log(max(since_s / FIRST_S, 1.0), LONGER))
+    return math.floor(math.log(max(since_s / FIRST_S, 1.0), longer))
 
 
 def _is_open(node: NodeState) -> bool:
@@ -144,10 +170,10 @@ def _is_open(node: NodeState) -> bool:
     return any(other.since_t == ALWAYS for other in node.otherwise)
 
 
-def _speak(state: FusionState) -> bool:
-    """Whether anything speaks against anybody's unit, or did when it was asked last."""
+def _speak(state: FusionState, doubted: float = DOUBTED) -> bool:
+    """Whether anything speaks against anybody's unit by so much, or did when it was asked last."""
     return any(
-        node.mode == "unit" and (_odds(node) > DOUBTED or node.walk_factors[0] > LED_ASTRAY or _is_open(node))
+        node.mode == "unit" and (_odds(node) > doubted or node.walk_factors[0] > LED_ASTRAY or _is_open(node))
         for node in state.nodes.values()
     )
 
