@@ -138,18 +138,21 @@ def import_(
     file: Annotated[
         Path, typer.Argument(help="A recorded log, NDJSON; - is standard input.", allow_dash=True)
     ],
-    incident: Annotated[str, typer.Option(help="Name of the incident that it becomes.")],
+    incident: Annotated[str | None, typer.Option(help="Name of the incident that it becomes.")] = None,
     data: Data = Path(".data"),
     database: Database = None,
     clock: Annotated[
-        Clock, typer.Option(help="recorded: its newest reading is now; live: the server's clock.")
-    ] = "recorded",
+        Clock | None, typer.Option(help="recorded: its newest reading is now; live: the server's clock.")
+    ] = None,
     level: Annotated[
         list[str] | None, typer.Option(help="A storey as NUMBER:NAME:HEIGHT_M; once for each.")
     ] = None,
     origin: Annotated[str | None, typer.Option(help="Local origin as LAT,LON,HEIGHT_M in WGS84.")] = None,
+    setting: Annotated[
+        list[str] | None, typer.Option(help="One as NAME=VALUE, such as tracker=paper-a; once for each.")
+    ] = None,
 ) -> None:
-    """Load a recorded log as a new incident."""
+    """Load a recorded log as a new incident: by what its first line says of it, and by what is given here."""
     from backend import recordings
 
     data.mkdir(parents=True, exist_ok=True)
@@ -159,8 +162,9 @@ def import_(
             incident,
             file,
             clock=clock,
-            levels=[recordings.parse_level(text) for text in level or ()],
+            levels=None if level is None else [recordings.parse_level(text) for text in level],
             origin=None if origin is None else recordings.parse_origin(origin),
+            settings=recordings.parse_settings(setting or ()),
         )
     typer.echo(
         f"incident {done.incident}: {done.batches} batches, {done.accepted} readings, "

@@ -49,8 +49,9 @@ class IncidentStore:
         origin: Origin | None = None,
         levels: list[Level] | None = None,
         settings: IncidentSettings | None = None,
+        created: float | None = None,
     ) -> Incident:
-        """Store a new, active incident."""
+        """Store a new, active incident; `created` (Unix seconds) is now, unless it was opened elsewhere."""
         now = time.time()
         incident = Incident(
             id=new_incident_id(now),
@@ -60,7 +61,7 @@ class IncidentStore:
             origin=origin,
             levels=levels or [],
             settings=settings or IncidentSettings(),
-            created=now,
+            created=now if created is None else created,
             closed=None,
             last_seq=0,
             first_t=None,
@@ -95,7 +96,7 @@ class IncidentStore:
         Args:
             incident: its id.
             changes: new values of `name`, `origin`, `levels`, `settings`, `state` (plain data); settings that
-                are not named keep their value.
+                are not named keep their value. `closed` (Unix seconds): when that was, unless it is now.
 
         Raises:
             pydantic.ValidationError: the settings contradict those that stay.
@@ -111,7 +112,7 @@ class IncidentStore:
                     "Create a new incident to go on."
                 )
             if before.state == "active" and changes.get("state") == "closed":
-                changes = changes | {"closed": time.time()}
+                changes = {"closed": time.time()} | changes
             if "settings" in changes:
                 merged = before.settings.model_dump() | changes["settings"]
                 changes = changes | {"settings": IncidentSettings.model_validate(merged).model_dump()}

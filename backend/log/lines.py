@@ -1,6 +1,6 @@
 """A batch as a line of NDJSON: what `GET …/log` sends, `firethread export` writes and `import` reads."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import msgspec
 from msgspec import Meta
@@ -16,6 +16,7 @@ class Line(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """A line of a recorded log; unknown fields are passed over, so that newer logs stay readable.
 
     Attributes:
+        incident: what it is a log of, in the first line of a file; see `recordings/about.py`.
         seq: its place in the log that it comes from.
         received: when it came there, Unix seconds.
         gateway: who posted it.
@@ -25,6 +26,7 @@ class Line(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         readings: the bytes of the array of readings, as they came.
     """
 
+    incident: dict[str, Any] | None = None
     seq: Annotated[int, Meta(ge=0)] | None = None
     received: EpochSeconds | None = None
     gateway: Identifier
@@ -44,15 +46,20 @@ class Line(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 _decode = msgspec.json.Decoder(Line).decode
 
 
-def log_line(logged: LoggedBatch) -> bytes:
+def log_line(logged: LoggedBatch, incident: dict[str, Any] | None = None) -> bytes:
     """The line of a batch, newline included; `readings` are the bytes that came.
 
     Line breaks between tokens become spaces, so that a line stays a line (inside strings JSON has none).
+
+    Args:
+        logged: the batch.
+        incident: what its log is of, where that is to be said.
     """
     _, readings = decode_sealed(decode_sealed_batch, logged.body)
     return (
         msgspec.json.encode(
             Line(
+                incident=incident,
                 seq=logged.seq,
                 received=logged.received,
                 gateway=logged.gateway,
@@ -70,7 +77,7 @@ _BREAKS_TO_SPACES = bytes.maketrans(b"\r\n", b"  ")
 
 
 def parse_line(line: bytes) -> Line:
-    """The inverse of `log_line`; `seq`, `received`, `sent` and `rejected` may be missing.
+    """The inverse of `log_line`; all but `gateway`, `batch` and `readings` may be missing.
 
     Raises:
         NotUnderstood: the line is no JSON, or no batch.

@@ -2,7 +2,7 @@
 
 from backend.recordings.datasets import NotTheDataSet, convert, converter_names
 from backend.recordings.ndjson import Imported, export_log, import_log
-from backend.recordings.options import parse_level, parse_origin
+from backend.recordings.options import parse_level, parse_origin, parse_settings
 
 __all__ = [
     "Imported",
@@ -13,4 +13,5 @@ __all__ = [
     "import_log",
     "parse_level",
     "parse_origin",
+    "parse_settings",
 ]

@@ -1,4 +1,7 @@
-"""Recorded logs as NDJSON files: the lines that `GET …/log` gives go in, and come out again byte for byte."""
+"""Recorded logs as NDJSON files: the lines that `GET …/log` gives go in, and come out again byte for byte.
+
+The first line of an export says of which incident it is, where that is not what the lines alone become.
+"""
 
 import shutil
 import sys
@@ -15,11 +18,12 @@ from backend.log.append import append_group
 from backend.log.base import NewBatch
 from backend.log.decode import judge
 from backend.log.engine import make_engine
-from backend.log.incident import Clock, Incident, Level, Origin
+from backend.log.incident import Clock, Incident, IncidentSettings, Level, Origin
 from backend.log.incidents import IncidentStore
 from backend.log.lines import Line, log_line, parse_line
 from backend.log.migrate import prepare
 from backend.log.read import SqlLogReader
+from backend.recordings.about import About, about, understood
 
 MAX_READINGS = 10_000
 """The contract's limit of a batch: what was exported had passed it."""
@@ -63,11 +67,12 @@ class Imported(msgspec.Struct, frozen=True, kw_only=True):
 
 def import_log(
     url: str,
-    name: str,
+    name: str | None,
     path: Path,
-    clock: Clock = "recorded",
+    clock: Clock | None = None,
     levels: list[Level] | None = None,
     origin: Origin | None = None,
+    settings: dict[str, object] | None = None,
     progress: Progress | None = None,
 ) -> Imported:
     """Write a recorded log into a new incident, past the server: each import makes an incident of its own.
@@ -76,6 +81,8 @@ def import_log(
     have come when it was sent, or at its newest reading; `seq` counts the lines anew. Readings are judged as
     ingest judges them; those that the line itself lists as rejected stay so.
 
+    What is given here goes before what the file says of its incident; what neither says has its default.
+
     Args:
         url: SQLAlchemy URL of the log's database; it is created or migrated where needed.
         name: of the incident.
@@ -83,10 +90,12 @@ def import_log(
         clock: of the incident.
         levels: its storeys.
         origin: of its local coordinates.
+        settings: those that are not as in the file, by name.
         progress: told after each transaction.
 
     Raises:
-        NotUnderstood: a line is no batch, and the message names it; or there is none.
+        NotUnderstood: a line is no batch, and the message names it; or there is none, or no name.
+        pydantic.ValidationError: the settings contradict each other.
         TooLarge: a line has more readings than a batch may have.
         SchemaTooNew: a newer version has written the database.
         OSError: the file cannot be read.
@@ -94,19 +103,30 @@ def import_log(
         LogUnwritable: the database cannot be written.
     """
     with _readable_twice(path) as (file, said):
-        total = sum(1 for _ in batches_in(file, "", clock, said))
+        known = _about(file, said)
+        given = {"name": name, "clock": clock, "levels": levels, "origin": origin}
+        known = known.model_copy(update={field: value for field, value in given.items() if value is not None})
+        if known.name is None:
+            raise NotUnderstood(f"{said} does not say the name of its incident: give it one by --incident.")
+        merged = IncidentSettings.model_validate(known.settings.model_dump() | (settings or {}))
+        total = sum(1 for _ in batches_in(file, "", known.clock, said))
         if total == 0:
             raise NotUnderstood(f"{said} holds no batch: an export of an incident has a line for each.")
         prepare(url)
         engine = make_engine(url)
         try:
-            incident = IncidentStore(engine).create(name, clock, origin, levels).id
+            store = IncidentStore(engine)
+            incident = store.create(
+                known.name, known.clock, known.origin, known.levels, merged, known.created
+            ).id
             imported, written = Imported(incident=incident), 0
-            for group in _groups(batches_in(file, incident, clock, said)):
+            for group in _groups(batches_in(file, incident, known.clock, said)):
                 imported = imported.plus(_append(engine, group))
                 written += len(group)
                 if progress is not None:
                     progress(written, total)
+            if known.closed is not None:
+                store.change(incident, {"state": "closed", "closed": known.closed})
             return imported
         finally:
             engine.dispose()
@@ -125,7 +145,7 @@ def _readable_twice(path: Path) -> Iterator[tuple[Path, str]]:
 
 
 def export_log(url: str, incident: str) -> Iterator[bytes]:
-    """The lines of an incident's log in `seq` order, newline included.
+    """The lines of an incident's log in `seq` order, newline included; the first says what it is, if need be.
 
     Args:
         url: SQLAlchemy URL of the log's database.
@@ -140,8 +160,10 @@ def export_log(url: str, incident: str) -> Iterator[bytes]:
     engine = make_engine(url)
     try:
         found = find_incident(IncidentStore(engine), incident)
+        said = about(found)
         for logged in SqlLogReader(engine).batches(found.id):
-            yield log_line(logged)
+            yield log_line(logged, said)
+            said = None
     finally:
         engine.dispose()
 
@@ -175,15 +197,44 @@ def batches_in(path: Path, incident: str, clock: Clock, said: str) -> Iterator[N
         TooLarge: a line has more readings than a batch may have.
         OSError: the file cannot be read.
     """
+    begun = False
+    for number, line in _lines(path, said):
+        if begun and line.incident is not None:
+            raise NotUnderstood(
+                f"{said}, line {number}: another incident begins here, and each has a file of its own. "
+                "Nothing was imported."
+            )
+        begun = True
+        with _naming(said, number):
+            batch = _new_batch(line, incident, clock)
+        yield batch
+
+
+def _about(path: Path, said: str) -> About:
+    """What the first line of a file says of its incident."""
+    for number, line in _lines(path, said):
+        with _naming(said, number):
+            return understood(line.incident)
+    return understood(None)
+
+
+def _lines(path: Path, said: str) -> Iterator[tuple[int, Line]]:
+    """The lines that are not empty, with their numbers from 1."""
     with path.open("rb") as file:
-        for number, line in enumerate(file, start=1):
-            if line.strip():
-                try:
-                    yield _new_batch(parse_line(line), incident, clock)
-                except (NotUnderstood, TooLarge) as error:
-                    raise type(error)(
-                        f"{said}, line {number}: {error.detail} Nothing was imported."
-                    ) from error
+        for number, text in enumerate(file, start=1):
+            if text.strip():
+                with _naming(said, number):
+                    line = parse_line(text)
+                yield number, line
+
+
+@contextmanager
+def _naming(said: str, number: int) -> Iterator[None]:
+    """What is refused is refused by the name of the file and the number of its line."""
+    try:
+        yield
+    except (NotUnderstood, TooLarge) as error:
+        raise type(error)(f"{said}, line {number}: {error.detail} Nothing was imported.") from error
 
 
 def _new_batch(line: Line, incident: str, clock: Clock) -> NewBatch:

@@ -1,8 +1,11 @@
-"""Storeys and origin as they are written on the command line."""
+"""Storeys, origin and settings as they are written on the command line."""
+
+import contextlib
+from collections.abc import Sequence
 
 from pydantic import ValidationError
 
-from backend.log.incident import Level, Origin
+from backend.log.incident import IncidentSettings, Level, Origin
 
 
 def parse_level(text: str) -> Level:
@@ -29,3 +32,21 @@ def parse_origin(text: str) -> Origin:
         return Origin(lat=lat, lon=lon, hae=hae)
     except (ValueError, ValidationError) as error:
         raise ValueError(f"an origin is LAT,LON,HAE in degrees and metres, not {text!r}") from error
+
+
+def parse_settings(texts: Sequence[str]) -> dict[str, object]:
+    """Settings from `NAME=VALUE` each, such as `lag_s=120`; whether they fit together is not looked at.
+
+    Raises:
+        ValueError: a text has another form, or there is no such setting.
+    """
+    settings: dict[str, object] = {}
+    for text in texts:
+        name, equals, said = text.partition("=")
+        if not equals or name not in IncidentSettings.model_fields:
+            known = ", ".join(IncidentSettings.model_fields)
+            raise ValueError(f"a setting is NAME=VALUE, such as 'lag_s=120', not {text!r}; there are {known}")
+        settings[name] = said
+        with contextlib.suppress(ValueError):
+            settings[name] = float(said)
+    return settings
