@@ -34,8 +34,8 @@ class DeviceUsed:
         )
         return lambda: self.page.evaluate("window.theServerAnswers()")
 
-    def waits_for_pictures(self) -> Callable[[], None]:
-        """From the next page on no live picture comes through; what lets them through."""
+    def waits_for_pictures(self, of: str = "/live") -> Callable[[], None]:
+        """From the next page on no live (or `/replay`) picture comes through; what lets them through."""
         held: list[Callable[[], None]] = []
         free = False
 
@@ -56,7 +56,7 @@ class DeviceUsed:
             for send in held:
                 send()
 
-        self.page.route_web_socket(re.compile("/live"), told)
+        self.page.route_web_socket(re.compile(of), told)
         return let_through
 
     def may_lose_the_sound(self) -> None:

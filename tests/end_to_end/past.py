@@ -27,6 +27,17 @@ class PastCompared:
         self.page.mouse.up()
 
     @property
+    def handle_short_of_end_s(self) -> float:
+        """How far before the end of the timeline its handle stands (s)."""
+        handle = self.page.get_by_test_id("timeline").get_by_role("slider")
+        return float(handle.evaluate("(handle) => Number(handle.max) - handle.valueAsNumber"))
+
+    @property
+    def asked(self) -> str:
+        """The time that the handle stands for, as the timeline says it."""
+        return self.page.get_by_test_id("asked").locator("span").first.inner_text()
+
+    @property
     def other_day(self) -> str:
         """The day of what is shown, where the top bar names it; nothing for today."""
         said = self.page.get_by_test_id("day")

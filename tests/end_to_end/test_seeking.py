@@ -5,7 +5,7 @@ import time
 import pytest
 
 from tests.end_to_end.commander import Commander
-from tests.end_to_end.scene import base, heard, recorded, responder, step
+from tests.end_to_end.scene import base, heard, one_inside, recorded, responder, step
 from tests.running import Post, Server, eventually
 
 T0 = 1_763_712_345.0
@@ -29,6 +29,39 @@ def walked(server: Server, post: Post, commander: Commander) -> str:
     return incident
 
 
+def test_until_the_past_has_come_the_present_stays_and_says_that_it_is(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = one_inside(post)
+    comes = commander.waits_for_pictures("/replay")
+    commander.opens(server.url, incident)
+    began = time.time()
+    eventually(lambda: time.time() > began + 3)
+    heard(post, incident, step(time.time(), "walker", [1, 0, 0]))
+    commander.scrubs_to(began)
+    eventually(lambda: commander.asked.startswith("→"))
+    for _ in range(20):
+        assert (commander.mode, set(commander.board())) == ("LIVE", {"WALKER"})
+        assert commander.clock > commander.asked.strip("→\u00a0")
+        time.sleep(0.05)
+
+    comes()
+    eventually(lambda: commander.mode == "REPLAY" and not commander.asked.startswith("→"))
+    assert commander.clock == commander.asked
+    commander.goes_back_to_live()
+    eventually(lambda: commander.mode == "LIVE")
+
+
+def test_the_handle_of_what_is_live_stands_at_the_end_from_the_first_second_on(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = one_inside(post)
+    commander.opens(server.url, incident)
+    for _ in range(10):
+        assert commander.handle_short_of_end_s < 0.01
+        time.sleep(0.2)
+
+
 @pytest.mark.usefixtures("walked")
 def test_under_a_storm_of_seeks_no_picture_stands_under_another_moment(commander: Commander) -> None:
     commander.notes_the_board()
@@ -43,7 +76,8 @@ def test_under_a_storm_of_seeks_no_picture_stands_under_another_moment(commander
 @pytest.mark.usefixtures("walked")
 def test_the_handle_stays_under_the_finger_that_leads_it_from_now_into_the_past(commander: Commander) -> None:
     commander.drags_the_handle(to=0.3)
-    eventually(lambda: commander.mode == "REPLAY" and commander.board())
+    # On the way there it was shown what lies between.
+    eventually(lambda: commander.mode == "REPLAY" and not commander.asked.startswith("→"))
     assert commander.board()["QUIET"].age_s == pytest.approx(0.3 * LONG_S, abs=3)
 
 

@@ -27,8 +27,14 @@ export class Feed {
 
   constructor(private readonly owner: FeedOwner) {}
 
-  follow(source: Source): void {
+  /** Hears another source; `kept`: what the one before showed stays, at its moment, until this one shows something. */
+  follow(source: Source, kept = false): void {
+    const { picture, clock } = this;
     this.leave();
+    if (kept) {
+      this.picture = picture;
+      this.clock = clock;
+    }
     this.source = source;
     source.subscribe({
       frame: (message, t) => this.take(message, pictureOf(message), t),

@@ -10,11 +10,15 @@ export interface ReplayOwner {
   readonly extent: Extent;
   /** Incident time of what is shown (Unix s). */
   readonly now: number;
+  /** There is a picture of the present to look at until the past has come. */
+  readonly showsPresent: boolean;
 }
 
 export class Replay {
-  /** The past is looked at. */
+  /** The past is looked at, or asked for. */
   on = $state(false);
+  /** It is what is shown: until its first picture has come, the present stays, and says that it is. */
+  shown = $state(false);
   paused = $state(false);
   speed = $state(1);
   /** The moment that was asked for and is not shown yet (Unix s): until then the clock stands with what is shown. */
@@ -23,6 +27,7 @@ export class Replay {
     onward: false,
     rate: () => (this.paused || this.feed.isLost || this.soughtT !== null ? 0 : this.speed),
     changed: (_, asked) => {
+      this.shown = true;
       if (asked) this.soughtT = null;
     },
     heartbeat: ({ ended }) => {
@@ -51,16 +56,19 @@ export class Replay {
     const at = within({ from: begin, to: end }, t);
     this.reach = { from: begin, to: end };
     this.source = new ReplaySource(incident.id, { begin, at, to: end, speed: this.speed, paused });
-    this.feed.follow(this.source);
+    const shownT = this.owner.now;
+    this.feed.follow(this.source, !this.feed.isLost);
     this.paused = paused;
+    this.shown = this.on ? this.shown : !this.owner.showsPresent;
     this.on = true;
     this.soughtT = at;
-    this.feed.keepTime(at);
+    this.feed.keepTime(this.feed.picture === null ? at : shownT);
   }
 
   /** Back to what is now. */
   end(): void {
     this.on = false;
+    this.shown = false;
     this.paused = false;
     this.speed = 1;
     this.soughtT = null;

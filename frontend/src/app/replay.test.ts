@@ -28,14 +28,19 @@ vi.mock("../sources/replay-source", () => ({
 }));
 
 let replay: Replay;
+let showsPresent: boolean;
 
 beforeEach(() => {
   vi.useFakeTimers();
+  showsPresent = true;
   replay = new Replay({
     incident: anIncident({ first_t: NOON, last_t: NOON + 100 }),
     extent: { from: NOON, to: NOON + 100 },
     get now(): number {
       return shownT();
+    },
+    get showsPresent(): boolean {
+      return showsPresent;
     },
   });
 });
@@ -90,4 +95,34 @@ test("a moment sought while the server is away stands over no other picture, nor
   expect([replay.feed.picture, shownT()]).toEqual([null, NOON + 10]);
   vi.advanceTimersByTime(3000);
   expect(shownT()).toBe(NOON + 10);
+});
+
+test("until the past has come, the present is what is shown; without one, nothing is", () => {
+  replay.begin(NOON + 50, true);
+  expect([replay.on, replay.shown, replay.soughtT]).toEqual([true, false, NOON + 50]);
+  shows(NOON + 50);
+  expect([replay.shown, replay.soughtT]).toEqual([true, null]);
+  replay.end();
+  expect(replay.shown).toBe(false);
+  showsPresent = false;
+  replay.begin(NOON + 50, true);
+  expect([replay.shown, replay.feed.picture]).toEqual([true, null]);
+});
+
+test("who looks further than the replay reaches keeps the last picture, at its moment, until the next comes", () => {
+  replay.begin(NOON + 50, false);
+  shows(NOON + 50);
+  replay.begin(NOON + 99, false);
+  vi.advanceTimersByTime(1500);
+  expect([replay.shown, replay.feed.picture?.clockT, shownT()]).toEqual([true, NOON + 50, NOON + 50]);
+  shows(NOON + 99);
+  expect([replay.feed.picture?.clockT, shownT()]).toEqual([NOON + 99, NOON + 99]);
+});
+
+test("a replay that is begun anew while the server is away shows no other moment", () => {
+  replay.begin(NOON + 50, false);
+  shows(NOON + 50);
+  way.listener.state({ link: "lost", lastWordMs: 0, attempts: 1 });
+  replay.begin(NOON + 10, false);
+  expect([replay.shown, replay.feed.picture, shownT()]).toEqual([true, null, NOON + 10]);
 });

@@ -76,7 +76,7 @@ export class Screen implements DoorOwner, ReplayOwner {
   );
 
   readonly mode = $derived<"live" | "replay">(this.replay.on ? "replay" : "live");
-  private readonly feed = $derived(this.replay.on ? this.replay.feed : this.live);
+  private readonly feed = $derived(this.replay.shown ? this.replay.feed : this.live);
   readonly levels = $derived(this.incident?.levels ?? []);
   /** Incident time (Unix s). */
   readonly now = $derived(incidentTime(this.feed.clock, this.localMs));
@@ -88,10 +88,11 @@ export class Screen implements DoorOwner, ReplayOwner {
   readonly livePicture = $derived(withStoreysAged(this.live.picture, this.liveNow, this.levels));
   /** The link that is lost, if one is: of what is shown, or the live one, by which alarms come. */
   readonly lostLink = $derived(
-    this.incident === null ? null : ([this.live, this.feed].find((feed) => feed.isLost)?.link ?? null),
+    this.incident === null ? null : ([this.live, this.replay.feed].find((feed) => feed.isLost)?.link ?? null),
   );
   readonly closed = $derived(this.incident?.state === "closed");
   readonly recorded = $derived(this.incident?.clock === "recorded");
+  readonly showsPresent = $derived(this.live.picture !== null);
   /** What the live picture tells is of now. */
   readonly liveIsHeard = $derived(
     !this.live.isLost &&
@@ -101,7 +102,7 @@ export class Screen implements DoorOwner, ReplayOwner {
   );
   readonly presence = $derived(
     presenceOf({
-      replay: this.replay.on,
+      replay: this.replay.shown,
       closed: this.closed,
       recorded: this.recorded,
       heard: this.lostLink === null && this.liveIsHeard,
@@ -113,7 +114,7 @@ export class Screen implements DoorOwner, ReplayOwner {
   );
   /** Where everybody was at the moment of the past that is shown, as known now; of nobody where that is not wanted. */
   readonly knownNow = $derived(
-    knownNow(this.replay.on ? this.compare.tracks : [], this.picture, this.now, this.levels),
+    knownNow(this.replay.shown ? this.compare.tracks : [], this.picture, this.now, this.levels),
   );
   readonly limits = $derived(
     this.presence === "unheard" ? whileUnheard(limitsOf(this.incident)) : limitsOf(this.incident),
@@ -123,7 +124,7 @@ export class Screen implements DoorOwner, ReplayOwner {
   /** Who is in alarm in what is shown. */
   readonly alarms = $derived(
     alarmByNode(
-      this.replay.on
+      this.replay.shown
         ? (this.picture?.alarms ?? [])
         : this.alarmList.flatMap(({ alarm, cleared }) => (cleared ? [] : [alarm])),
     ),

@@ -3,6 +3,8 @@ import { anAlarm, anIncident, NOON } from "./samples";
 import {
   eventsAt,
   extentOf,
+  HANDLE_STEP_S,
+  handleFrom,
   type Mark,
   neighbourMark,
   nextSpeed,
@@ -27,6 +29,16 @@ test("speeds go from a half to 32 and stop there", () => {
 });
 
 describe("the bar", () => {
+  test.each([1, 1.3, 4.74, 7200.01])(
+    "is whole steps long, so that the handle reaches its end after %d s",
+    (long) => {
+      const from = handleFrom({ from: NOON, to: NOON + long });
+      expect(((NOON + long - from) / HANDLE_STEP_S) % 1).toBeCloseTo(0);
+      expect(NOON - from).toBeGreaterThanOrEqual(0);
+      expect(NOON - from).toBeLessThan(HANDLE_STEP_S);
+    },
+  );
+
   test("begins no later than what this screen has seen, though no row of it is stored yet", () => {
     expect(extentOf(anIncident({ first_t: null }), [], NOON + 2, NOON + 60).from).toBe(NOON + 2);
   });

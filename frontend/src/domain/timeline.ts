@@ -43,6 +43,15 @@ export function extentOf(
   return { from: Math.min(from, newestT - 1), to: newestT };
 }
 
+/** What the handle can be put to lies so far apart (s). */
+export const HANDLE_STEP_S = 0.5;
+
+/** Where the bar begins so that its end is a whole number of steps away: a handle stands on steps only, counted
+ * from there, and would not reach the end of an incident that has just begun. */
+export function handleFrom({ from, to }: Extent): number {
+  return to - Math.ceil((to - from) / HANDLE_STEP_S) * HANDLE_STEP_S;
+}
+
 /** What a live picture and the log say of one drop may differ by this (s). */
 const SAME_DROP_S = 10;
 
