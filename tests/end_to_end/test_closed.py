@@ -23,6 +23,8 @@ def test_a_screen_learns_that_its_incident_was_closed_and_its_clock_stands_still
     close(post, incident)
     eventually(lambda: commander.mode == "CLOSED", within_s=15)
     assert commander.newest_button == "Closed"
+    assert commander.counts == "1 responder 1 was live 0 stale 0 lost"
+    assert commander.board()["WALKER"].status == "Was live"
 
     def stands_still() -> bool:
         before = commander.clock

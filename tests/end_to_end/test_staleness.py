@@ -89,4 +89,4 @@ def test_who_is_not_tracked_any_more_is_told_with_the_reason_and_is_no_responder
     commander.opens(server.url, incident)
     commander.sees("FF2", "Not tracked")
     assert "unit burned, man is out" in commander.board_words
-    assert commander.counts == "1 responder 1 live 0 stale 0 lost"
+    assert commander.counts == "1 responder 1 was live 0 stale 0 lost"

@@ -39,13 +39,14 @@ export interface BoardCounts {
 const NO_CREW = "No crew";
 const UAVS = "UAV";
 
-/** Rows by crew: named crews in order of name, then those without one, then aircraft. */
+/** Rows by crew: named crews in order of name, then those without one, then aircraft; of an incident that is over or not. */
 export function board(
   picture: Picture | null,
   now: number,
   levels: readonly Level[],
   limits: StalenessLimits,
   alarms: ReadonlyMap<string, FrameAlarm>,
+  over = false,
 ): BoardCrew[] {
   const crews = new Map<string, BoardRow[]>();
   for (const sighting of picture?.nodes.values() ?? []) {
@@ -59,7 +60,7 @@ export function board(
       node: state.node,
       name: nameOf(state),
       status,
-      statusWord: statusWord(status),
+      statusWord: statusWord(status, over),
       level: storeyWords(state, levels),
       levelUnsure: storeyUnsure(state),
       age_s: ageS(state, now),

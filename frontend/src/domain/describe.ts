@@ -1,6 +1,7 @@
 /** The map in words, for those who do not see it. */
 import type { BoardCounts } from "./accountability";
 import type { LevelChoice } from "./levels";
+import { liveWords, type Presence } from "./presence";
 import type { Level } from "./types";
 import { levelWords, plural } from "./words";
 
@@ -10,11 +11,12 @@ export function mapInWords(
   breadcrumbs: number,
   choice: LevelChoice,
   levels: readonly Level[],
+  presence: Presence,
 ): string {
   const where = choice === "all" ? "all storeys" : levelWords(choice, levels);
   return [
     `Map of ${where}: ${plural(counts.responders, "responder")}`,
-    `${counts.live} live, ${counts.stale} stale, ${counts.lost} lost`,
+    `${liveWords(counts.live, presence)}, ${counts.stale} stale, ${counts.lost} lost`,
     plural(breadcrumbs, "breadcrumb"),
     alarms === 0 ? "no alarm" : plural(alarms, "alarm"),
   ].join(", ");

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { badgeOf, type Looking, newestButton, presenceOf } from "./presence";
+import { badgeOf, type Looking, liveWords, newestButton, presenceOf } from "./presence";
 
 const OPEN: Looking = { replay: false, closed: false, recorded: false, heard: true };
 
@@ -19,4 +19,9 @@ test.each<[string, Partial<Looking>, string, string]>([
   const presence = presenceOf({ ...OPEN, ...looking });
   expect(badgeOf(presence)).toBe(badge);
   expect(newestButton(presence, { ...OPEN, ...looking })).toBe(button);
+});
+
+test("nobody is live in an incident that is over, nor in one whose time stands", () => {
+  expect([liveWords(3, "closed"), liveWords(1, "recorded")]).toEqual(["3 were live", "1 was live"]);
+  expect([liveWords(3, "live"), liveWords(3, "replay")]).toEqual(["3 live", "3 live"]);
 });

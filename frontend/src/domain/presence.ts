@@ -32,6 +32,16 @@ export function badgeOf(presence: Presence): string {
   return BADGES[presence];
 }
 
+/** What is shown is how it was when the last word came: the incident is over, or its time stands until the next. */
+export function isOfThen(presence: Presence): boolean {
+  return presence === "closed" || presence === "recorded";
+}
+
+/** How many are live, where that is so now; in a replay as it was shown then. */
+export function liveWords(count: number, presence: Presence): string {
+  return isOfThen(presence) ? `${count} ${count === 1 ? "was" : "were"} live` : `${count} live`;
+}
+
 /** What the button says that leads to the newest picture, or tells that it is shown already. */
 export function newestButton(
   presence: Presence,

@@ -16,8 +16,9 @@ const ALARM_WORDS: Record<FrameAlarm["alarm"], string> = {
   help: "HELP",
 };
 
-export function statusWord(status: Status): string {
-  return STATUS_WORDS[status];
+/** `over`: the incident has ended, and the status is the one at its end. */
+export function statusWord(status: Status, over = false): string {
+  return over && status === "live" ? "Was live" : STATUS_WORDS[status];
 }
 
 export function alarmWord(alarm: FrameAlarm["alarm"]): string {
