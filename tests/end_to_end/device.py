@@ -71,6 +71,13 @@ class DeviceUsed:
         """Have the system take it away."""
         self.page.evaluate("window.theSound.suspend()")
 
+    def reads_with_larger_text(self, times: float) -> None:
+        """Have the browser's own size of text set to so many times the usual one, as who sees badly does."""
+        devtools = self.page.context.new_cdp_session(self.page)
+        devtools.send("Page.enable")
+        sizes = {"standard": round(16 * times), "fixed": round(13 * times)}
+        devtools.send("Page.setFontSizes", {"fontSizes": sizes})
+
     def swipes_back(self) -> None:
         """Swipe in from the edge as who wears gloves does unawares: the browser goes back."""
         self.page.evaluate("history.back()")

@@ -27,6 +27,17 @@ class LayoutSeen:
         return found
 
     @property
+    def text_px(self) -> dict[str, float]:
+        """How large text is (CSS pixels): names on the board, the clock of the top bar, and the rest."""
+        sizes: dict[str, float] = self.page.evaluate(
+            """() => Object.fromEntries(Object.entries(
+                 {board: '[data-testid=responder] .name', clock: '[data-testid=clock] time', page: 'body'}
+               ).map(([what, where]) =>
+                 [what, parseFloat(getComputedStyle(document.querySelector(where)).fontSize)]))"""
+        )
+        return sizes
+
+    @property
     def narrowest_name(self) -> float:
         """The room of the name that has the least on the board (CSS pixels)."""
         widths: list[float] = self.page.get_by_test_id("board").evaluate(

@@ -153,6 +153,27 @@ def test_enlarged_to_twice_its_size_the_screen_loses_nothing(
     assert commander.scrolls_to_the_end()
 
 
+@pytest.mark.parametrize("times", [1.5, 2])
+@pytest.mark.parametrize(("width", "height"), [(1366, 1024), (1024, 768)])
+def test_text_grows_as_the_browser_is_set_and_pushes_nothing_off_the_screen(
+    server: Server, post: Post, commander: Commander, width: int, height: int, times: float
+) -> None:
+    incident = post.open_incident()
+    calls = [alarm(T0, "walker", text=LUNAR), alarm(T0, "walker", kind="pass")]
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]), *calls)
+    commander.sits_at(width, height)
+    commander.opens(server.url, incident)
+    usual = commander.text_px
+    commander.reads_with_larger_text(times)
+    commander.reloads()
+    eventually(lambda: len(commander.banners) == 2)
+    assert commander.text_px["page"] == times * usual["page"]
+    assert commander.text_px["board"] == times * usual["board"]
+    assert commander.text_px["clock"] >= 0.8 * times * usual["clock"]
+    assert commander.map_height >= 0.2 * height
+    assert (commander.off_the_screen, commander.cut_off()) == ([], [])
+
+
 @pytest.mark.parametrize("called", [False, True], ids=["calm", "mayday"])
 def test_a_crew_leader_with_a_phone_sees_the_map_the_counts_and_every_storey(
     server: Server, post: Post, commander: Commander, called: bool

@@ -1,7 +1,7 @@
 import { describe, expect, test } from "vitest";
 import * as views from "./view";
 
-const view: views.View = { east_m: 10, north_m: -5, pixelsPerMetre: 8, width: 800, height: 600 };
+const view: views.View = { east_m: 10, north_m: -5, pixelsPerMetre: 8, width: 800, height: 600, text: 1 };
 const margins: views.Margins = { left: 100, right: 20, top: 40, bottom: 60 };
 
 test("east is right and north is up", () => {

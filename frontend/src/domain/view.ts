@@ -9,6 +9,8 @@ export interface View {
   /** Size of the map (CSS pixels). */
   readonly width: number;
   readonly height: number;
+  /** How many times the usual size text has: as the browser's own is set. */
+  readonly text: number;
 }
 
 export interface Bounds {
@@ -35,13 +37,13 @@ const NARROW_PX = 520;
 const NARROW_MARGINS: Margins = { left: 45, right: 75, top: 85, bottom: 100 };
 
 /** A phone's map. */
-export function isNarrow({ width }: Pick<View, "width">): boolean {
-  return width <= NARROW_PX;
+export function isNarrow({ width, text }: Pick<View, "width" | "text">): boolean {
+  return width <= NARROW_PX * text;
 }
 
 /** The margins that a map of this size keeps free. */
-export function marginsOf({ width }: Pick<View, "width">): Margins {
-  if (isNarrow({ width })) return NARROW_MARGINS;
+export function marginsOf({ width, text }: Pick<View, "width" | "text">): Margins {
+  if (isNarrow({ width, text })) return NARROW_MARGINS;
   const share = Math.min(1, width / WIDE_ENOUGH_PX);
   return { ...FULL_MARGINS, left: FULL_MARGINS.left * share, right: FULL_MARGINS.right * share };
 }
@@ -51,7 +53,7 @@ export const MAX_PIXELS_PER_METRE = 400;
 /** Fitting never shows less than this (m): one responder alone is no reason to fill the map with a dot. */
 const LEAST_SPAN_M = 12;
 
-export const FIRST_VIEW: View = { east_m: 0, north_m: 0, pixelsPerMetre: 12, width: 1, height: 1 };
+export const FIRST_VIEW: View = { east_m: 0, north_m: 0, pixelsPerMetre: 12, width: 1, height: 1, text: 1 };
 
 export function toScreen(view: View, e_m: number, n_m: number): [x: number, y: number] {
   return [

@@ -104,13 +104,13 @@ function trail(context: CanvasRenderingContext2D, scene: Scene, node: string): v
 }
 
 function write(context: CanvasRenderingContext2D, scene: Scene, text: string, x: number, y: number): void {
-  context.font = "600 13px system-ui, sans-serif";
+  context.font = `600 ${13 * scene.view.text}px system-ui, sans-serif`;
   context.textAlign = "center";
   context.textBaseline = "top";
   const width = context.measureText(text).width + 8;
   context.globalAlpha = 0.82;
   context.fillStyle = scene.palette.panel;
-  context.fillRect(x - width / 2, y - 1, width, 17);
+  context.fillRect(x - width / 2, y - 1, width, 17 * scene.view.text);
   context.globalAlpha = 1;
   context.fillStyle = scene.palette.ink;
   context.fillText(text, x, y);

@@ -29,3 +29,13 @@ test("no label lies over the arrow to the north or the length of a metre", () =>
   expect(places.length).toBeGreaterThan(3);
   expect(places.filter(([x, y]) => x < box.width && y > box.y)).toEqual([]);
 });
+
+test("lines of a label lie as far apart as text is large", () => {
+  const scene = aScene({ view: VIEW, picture: pictureWith(aNode({ position_m: [0, 0, 0] })) });
+  const apart = (text: number) => {
+    const [first, second] = written({ ...scene, view: { ...VIEW, text } });
+    return (second?.[1] ?? 0) - (first?.[1] ?? 0);
+  };
+  expect(apart(1)).toBeGreaterThan(0);
+  expect(apart(2)).toBe(2 * apart(1));
+});

@@ -6,10 +6,11 @@ import type { Box, Layer, Placed, Scene } from "./layer";
 import { markReach, movers, RADIUS, rankOf } from "./place";
 import { scaleBox } from "./scale";
 
+/** Of text of the usual size. */
 const LINE_PX = 16;
+const NAME_PX = 14;
 const PADDING = 5;
 const BESIDE_PX = 6;
-const NAME_FONT = "600 14px system-ui, sans-serif";
 const MOST_WIDTHS = 4000;
 
 const widths = new Map<string, number>();
@@ -29,7 +30,7 @@ function widthOf(context: CanvasRenderingContext2D, text: string): number {
 export const labels: Layer = {
   draw(context, scene) {
     context.save();
-    context.font = NAME_FONT;
+    context.font = `600 ${NAME_PX * scene.view.text}px system-ui, sans-serif`;
     context.textAlign = "left";
     context.textBaseline = "top";
     const everybody = movers(scene);
@@ -71,7 +72,7 @@ function labelOf(context: CanvasRenderingContext2D, scene: Scene, place: Placed)
   const { whole, short } = labelWords(place.node, { ...scene, narrow: isNarrow(scene.view) });
   const size = (lines: readonly string[]) => ({
     width: Math.max(...lines.map((line) => widthOf(context, line))) + 2 * PADDING,
-    height: lines.length * LINE_PX + PADDING,
+    height: lines.length * LINE_PX * scene.view.text + PADDING,
   });
   const wanted = {
     node: place.node.node,
@@ -123,6 +124,6 @@ function write(
       : index === 0
         ? scene.palette.ink
         : scene.palette.inkSoft;
-    context.fillText(line, box.x + PADDING, box.y + 3 + index * LINE_PX);
+    context.fillText(line, box.x + PADDING, box.y + 3 + index * LINE_PX * scene.view.text);
   });
 }

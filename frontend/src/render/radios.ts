@@ -20,13 +20,13 @@ interface Name {
 }
 
 /** The names that have room: those that would lie over one before them are left out. The marks tell more than a smear. */
-export function readable(names: readonly Name[]): Name[] {
+export function readable(names: readonly Name[], size = 1): Name[] {
   const kept: Name[] = [];
-  const half = ({ text }: Name) => (text.length * CHARACTER_PX) / 2;
+  const half = ({ text }: Name) => (text.length * CHARACTER_PX * size) / 2;
   for (const name of names) {
     const over = kept.some(
       (other) =>
-        Math.abs(other.y - name.y) < LINE_PX &&
+        Math.abs(other.y - name.y) < LINE_PX * size &&
         Math.abs(other.x - name.x) < half(other) + half(name) + APART_PX,
     );
     if (!over) kept.push(name);
@@ -43,7 +43,7 @@ export const radios: Layer = {
       mark(context, scene, place);
     }
     if (scene.view.pixelsPerMetre >= NAMED_FROM || all.length <= NEAR_ENOUGH_TO_NAME) {
-      context.font = "12px system-ui, sans-serif";
+      context.font = `${12 * scene.view.text}px system-ui, sans-serif`;
       context.textAlign = "center";
       context.textBaseline = "top";
       context.globalAlpha = 1;
@@ -51,7 +51,7 @@ export const radios: Layer = {
       const names = all.flatMap(({ node, x, y, elsewhere }) =>
         elsewhere ? [] : [{ text: words(scene, node), x, y: y + 9 }],
       );
-      for (const { text, x, y } of readable(names)) context.fillText(text, x, y);
+      for (const { text, x, y } of readable(names, scene.view.text)) context.fillText(text, x, y);
     }
     context.restore();
   },

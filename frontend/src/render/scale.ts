@@ -28,8 +28,8 @@ function hasRoom(view: View): boolean {
 /** What it takes up of a map. */
 export function scaleBox(view: View): Box {
   if (!hasRoom(view)) return { x: 0, y: view.height, width: 0, height: 0 };
-  const width = MARGIN + lengthOf(view) * view.pixelsPerMetre + TO_NORTH_PX + NORTH_PX;
-  const height = footOf(view) + HEIGHT_PX;
+  const width = MARGIN + lengthOf(view) * view.pixelsPerMetre + TO_NORTH_PX + NORTH_PX * view.text;
+  const height = footOf(view) + HEIGHT_PX * view.text;
   return { x: 0, y: view.height - height, width, height };
 }
 
@@ -48,7 +48,7 @@ export const scale: Layer = {
     context.lineTo(MARGIN + width, y);
     context.lineTo(MARGIN + width, y - 6);
     context.stroke();
-    context.font = "600 13px system-ui, sans-serif";
+    context.font = `600 ${13 * view.text}px system-ui, sans-serif`;
     context.textAlign = "left";
     context.textBaseline = "bottom";
     context.fillText(`${length} m`, MARGIN + 6, y - 4);
