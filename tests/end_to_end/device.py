@@ -3,18 +3,17 @@
 import re
 from collections.abc import Callable
 
-from playwright.sync_api import Page, WebSocketRoute
+from playwright.sync_api import WebSocketRoute
+
+from tests.end_to_end.fingers import FingersUsed
 
 
-class DeviceUsed:
+class DeviceUsed(FingersUsed):
     """What becomes of it.
 
     Args:
         page: a page of the browser.
     """
-
-    def __init__(self, page: Page) -> None:
-        self.page = page
 
     def sleeps(self, seconds: float) -> Callable[[], None]:
         """Wake up after that: only the wall clock has gone on; what lets the server answer."""

@@ -61,6 +61,16 @@ def test_a_mayday_stands_until_a_person_has_acknowledged_and_cleared_it(
     eventually(lambda: post.frame(incident)["alarms"] == [])
 
 
+def test_a_second_tap_of_a_hand_in_a_glove_clears_no_mayday(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = in_trouble(server, post, commander)
+    commander.taps_again_and_again("Acknowledge")
+    commander.page.wait_for_timeout(1500)
+    assert "acknowledged" in commander.banners[0]
+    assert [one["state"] for one in spoken_by_command_post(post, incident)] == ["acknowledged"]
+
+
 def test_a_mayday_that_the_unit_clears_by_itself_stands_until_a_person_has_seen_it(
     server: Server, post: Post, commander: Commander
 ) -> None:
