@@ -1,6 +1,19 @@
-import { expect, test } from "vitest";
+import { afterEach, expect, test, vi } from "vitest";
 import { NOON } from "./samples";
-import { beforeEnd, clockTime, dateTime, day, utc } from "./time";
+import { beforeEnd, clockTime, dateTime, day, utc, zoneNearChange } from "./time";
+
+afterEach(() => {
+  vi.unstubAllEnvs();
+});
+
+test("a time that comes twice as the clocks are set back is told with its zone, and no other", () => {
+  vi.stubEnv("TZ", "Europe/Prague");
+  const setBack = Date.UTC(2025, 9, 26, 1) / 1000;
+  expect([zoneNearChange(setBack - 1800), zoneNearChange(setBack + 1800)]).toEqual(["UTC+2", "UTC+1"]);
+  expect([zoneNearChange(setBack - 86_400), zoneNearChange(NOON)]).toEqual([null, null]);
+  vi.stubEnv("TZ", "America/St_Johns");
+  expect(zoneNearChange(Date.UTC(2025, 10, 2, 4) / 1000)).toBe("UTC−2:30");
+});
 
 test("a time of day is local and has seconds", () => {
   const local = new Date(NOON * 1000);

@@ -18,6 +18,19 @@ export function day(t: number): string {
   return DAY.format(new Date(t * 1000));
 }
 
+/** So near to a change of the clocks a time may be taken for one before it, or after (s). */
+const NEAR_CHANGE_S = 6 * 3600;
+
+/** "UTC+2" near the hour in which the clocks are changed, which has some times twice; nothing else. */
+export function zoneNearChange(t: number): string | null {
+  const aheadMin = (at: number) => -new Date(at * 1000).getTimezoneOffset();
+  const ahead = aheadMin(t);
+  if (aheadMin(t - NEAR_CHANGE_S) === ahead && aheadMin(t + NEAR_CHANGE_S) === ahead) return null;
+  const [hours, minutes] = [Math.trunc(Math.abs(ahead) / 60), Math.abs(ahead) % 60];
+  const sign = ahead < 0 ? "−" : "+";
+  return `UTC${sign}${hours}${minutes === 0 ? "" : `:${String(minutes).padStart(2, "0")}`}`;
+}
+
 /** "20 Nov 2025, 21:04:10". */
 export function dateTime(t: number): string {
   return `${day(t)}, ${clockTime(t)}`;
