@@ -117,8 +117,9 @@ def _solved(state: FusionState) -> tuple[Problem, Solved]:
     state, rows = problem.layout.state, problem.rows
     first, *later = LEARNING
     learn(state, problem, solved, first, kinds=False)
-    if learn_ranging(state, problem, solved):
-        rows.learn(state.noise)
+    learn_ranging(state, problem, solved)
+    # Where no wall is, what is assumed of it would have a unit's noise explain less than it does.
+    rows.learn(state.noise, walls=False)
     for most in later:
         problem = Problem(_layout(state), rows, None)
         solved = problem.solve(solved.x, iterations=1)

@@ -129,13 +129,19 @@ class Rows:
         )
         return other
 
-    def learn(self, noise: dict[str, LearnedNoise]) -> None:
-        """Give each reading the noise that has been learned of its technology and its link."""
+    def learn(self, noise: dict[str, LearnedNoise], *, walls: bool = True) -> None:
+        """Give each reading the noise that has been learned of its technology and its link.
+
+        Args:
+            noise: of technologies, by name.
+            walls: of ranges inside, `physics.WALL_M` as well, which nobody has seen.
+        """
         names = self._layout.state.sources
         known = [(noise.get(name, LearnedNoise()), name.startswith(UNTOLD_POWER)) for name in names]
         told = [one.terms(NOISES[RSSI if power else RANGE, 0].item()) for one, power in known]
         learned = np.array(told).reshape(-1, 3)
-        white, common, outliers = scattered(learned, self._rows, self._readings.kind, self._inside)
+        walled = self._inside if walls else np.zeros_like(self._inside)
+        white, common, outliers = scattered(learned, self._rows, self._readings.kind, walled)
         self.noise[:, 0] = outliers
         self._usual_noise = self.noise.copy()
         echoes.tell(self.noise, self.pairs[:, ECHO], self.alike)

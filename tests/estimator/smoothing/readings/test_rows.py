@@ -29,9 +29,10 @@ def stood(role: Role, seconds: int = 200) -> list[AnyReading]:
     return readings
 
 
-def worth_m(role: Role) -> float:
+def worth_m(role: Role, *, walls: bool = True) -> float:
     """Standard deviation of all ranges to a node of a role together (m)."""
     problem = problem_of(fused(stood(role)))
+    problem.rows.learn(problem.layout.state.noise, walls=walls)
     told = problem.rows.sigma[: len(problem.rows.pairs)]
     return float((told**-2).sum() ** -0.5)
 
@@ -42,6 +43,10 @@ def test_inside_ranges_of_a_link_are_worth_no_more_than_what_stays_while_nobody_
 
 def test_nothing_stays_between_a_responder_and_a_surveyed_anchor() -> None:
     assert worth_m("anchor") < 0.5 * physics.WALL_M
+
+
+def test_without_what_is_assumed_of_walls_they_are_worth_what_has_been_learned_of_them() -> None:
+    assert worth_m("breadcrumb", walls=False) == pytest.approx(worth_m("anchor"), rel=0.01)
 
 
 def beside_db(seconds: int) -> tuple[float, float]:
