@@ -53,6 +53,6 @@ def searched(factor: float, seed: int) -> list[AnyReading]:
 def test_what_is_assumed_of_walls_makes_no_unit_better_than_it_is(factor: float) -> None:
     learned = []
     for seed in range(4):
-        problem, _ = solve_whole(first_pass(in_order(searched(factor, seed))))
+        problem, *_ = solve_whole(first_pass(in_order(searched(factor, seed))))
         learned.append(problem.layout.state.nodes["ff1"].walk_factors[0])
     assert float(np.exp(np.mean(np.log(learned)))) == pytest.approx(factor, rel=0.35)
