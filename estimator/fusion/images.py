@@ -1,5 +1,6 @@
 """Images of the ground plane: where somebody may be whom readings tell only up to a turn or a reflection."""
 
+import math
 from collections.abc import Sequence
 from typing import Self
 
@@ -7,6 +8,10 @@ import msgspec
 import numpy as np
 
 from estimator.graph.dense import Array
+
+ALWAYS = math.inf
+"""Since when somebody's way would be another one whose unit is worn another way: its beginning tells of it,
+and no moment at which he may have changed sides."""
 
 
 class Image(msgspec.Struct, frozen=True, array_like=True):
@@ -75,7 +80,7 @@ class Otherwise(msgspec.Struct, frozen=True, array_like=True):
         of: number of the node whose way would be another one: his own, or somebody's who takes him along.
         share: how likely that is.
         image: where he would be now, as an image of his place.
-        since_t: from when on that way would be another one (s).
+        since_t: from when on that way would be another one (s), or `ALWAYS`.
         way: the image of it.
     """
 
@@ -84,6 +89,11 @@ class Otherwise(msgspec.Struct, frozen=True, array_like=True):
     image: Image
     since_t: float
     way: Image
+
+    @property
+    def by_unit(self) -> bool:
+        """It is how somebody wears his unit that is open, not to which side he went."""
+        return self.since_t == ALWAYS
 
     @property
     def mode(self) -> tuple[int, float, Image]:

@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
+from estimator.fusion.images import Image
 from estimator.fusion.memory.ledger import GYRO_BIAS
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
 from estimator.measurements.displacement import Displacement
 
@@ -30,18 +30,13 @@ class Worn(NamedTuple):
     turned_rad: float = 0.0
 
     @property
-    def matrix(self) -> Array:
-        """What it makes of displacements, 2 × 2."""
-        cosine, sine, flip = (
-            math.cos(self.turned_rad),
-            math.sin(self.turned_rad),
-            -1.0 if self.mirrored else 1.0,
-        )
-        return np.array([[cosine, -sine * flip], [sine, cosine * flip]])
+    def image(self) -> Image:
+        """What it makes of displacements."""
+        return Image(math.cos(self.turned_rad), math.sin(self.turned_rad), -1.0 if self.mirrored else 1.0)
 
     def of(self, east: float, north: float) -> tuple[float, float]:
         """What a displacement is that is reported as this (m)."""
-        led_e, led_n = (self.matrix @ (east, north)).tolist()
+        led_e, led_n = self.image.of(np.array((east, north))).tolist()
         return led_e, led_n
 
     def faced(self, heading_rad: float | None) -> float | None:
@@ -90,7 +85,7 @@ def wear(state: FusionState, number: int, worn: Worn) -> None:
     change = worn.after(worn_of(node).back())
     steps = state.ledger.table("steps").copy()
     mine = steps[:, 1] == number
-    steps[mine, 3:5] = steps[mine, 3:5] @ change.matrix.T
+    steps[mine, 3:5] = change.image.of(steps[mine, 3:5])
     state.ledger.replace("steps", steps)
     if change.mirrored:
         singles = state.ledger.table("singles").copy()

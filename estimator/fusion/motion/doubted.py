@@ -65,7 +65,7 @@ def _asked(node: NodeState) -> bool:
     """Whether a unit leads its bearer, and one place is all that it may have led him to."""
     if (
         node.turned
-        or any(o.since_t < math.inf for o in node.otherwise)
+        or not all(other.by_unit for other in node.otherwise)
         or node.apart is not None
         or node.unit_t is None
     ):

@@ -14,7 +14,7 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from estimator.fusion.entering.worn import RIGHT, wear, worn_of
-from estimator.fusion.images import Image
+from estimator.fusion.images import ALWAYS, Image
 from estimator.fusion.learned.rival import DOUBTED, LED_ASTRAY
 from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.memory.nodes import NodeState
@@ -31,7 +31,7 @@ from estimator.smoothing.problem.solved import Solved
 CLEARER, OPEN = 20.0, 2.0
 """A unit is taken to be worn another way where that is likelier by this much (log odds): a window that was
 bent otherwise has made 18 of none. Where it is open, by this much. Powers share their errors, and have made
-37 of none: by them alone it is open, and no more."""
+32 of none: by them alone it is open, and no more."""
 GONE_M = 5.0
 """Who has gone less has hardly told how his unit is worn."""
 MOST, SOME = 4, 3
@@ -41,8 +41,6 @@ FIRST_S, LONGER, LITTLE_LONGER, YOUNG_S = 6.0, 1.5, 1.15, 60.0
 one that is no longer young nothing is asked where nothing even hints at it: each way costs a solution."""
 HINTED = -4.5
 """Log odds from which on something hints at a bad unit."""
-ALWAYS = math.inf
-"""Since when somebody's way would be another one whose unit is worn another way: its prior tells of it."""
 
 
 def worn(
@@ -167,7 +165,7 @@ def _times(since_s: float, longer: float) -> int:
 
 def _is_open(node: NodeState) -> bool:
     """Whether it is not decided how somebody's unit is worn, or another one's who takes him along."""
-    return any(other.since_t == ALWAYS for other in node.otherwise)
+    return any(other.by_unit for other in node.otherwise)
 
 
 def _speak(state: FusionState, doubted: float = DOUBTED) -> bool:
@@ -201,8 +199,7 @@ def _take(state: FusionState, guess: Guess) -> None:
 def _mode(guess: Guess, best: Guess, share: float) -> Mode:
     """Another guess as another solution of the window."""
     number, way = (*guess.worn, *best.worn)[0]
-    cosine, sine = math.cos(way.turned_rad), math.sin(way.turned_rad)
-    return Mode(number, share, guess.x, ALWAYS, Image(cosine, sine, -1.0 if way.mirrored else 1.0), {})
+    return Mode(number, share, guess.x, ALWAYS, way.image, {})
 
 
 def _kept(layout: Layout, x: Array) -> list[Mode]:
@@ -213,7 +210,7 @@ def _kept(layout: Layout, x: Array) -> list[Mode]:
     found: dict[tuple[int, float, Image], Mode] = {}
     for node in layout.state.nodes.values():
         for other in node.otherwise if node.index in at else ():
-            if other.since_t == ALWAYS:
+            if other.by_unit:
                 mode = Mode(other.of, other.share, x.copy(), ALWAYS, other.way, {})
                 mode = found.setdefault(other.mode, mode)
                 own = slice(at[node.index], at[node.index] + 2)
