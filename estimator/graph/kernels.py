@@ -53,7 +53,7 @@ def turn_link(blocks: Array, turned: Array) -> None:
                 turned[at + r, at + c] = blocks[block, c, r]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def eliminate(first: int, last: int, diagonal: Array, link: Array, wide: Array) -> int:
     """Operation 3 of paper A (eq. 17) for keyframes `first` to `last` − 1, one after the other.
 
@@ -148,7 +148,7 @@ def add_narrow(shares: Array, row: int, rows: Array, targets: Array, at: int) ->
         targets[at, row, i] += total + f * rows[5, i]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def take_off(first: int, last: int, wide: Array, corner: Array, gradient: Array) -> float:
     """Take off the border what it has lost by `eliminate`, Wᵀ W.
 
@@ -172,7 +172,7 @@ def take_off(first: int, last: int, wide: Array, corner: Array, gradient: Array)
     return float(taken[across - 1, across - 1])
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def substitute(diagonal: Array, link: Array, wide: Array, fixed: Array, steps: Array) -> None:
     """Steps of all keyframes (k × n) after `eliminate`, from the end back, for a step of the border (s)."""
     length, width, across = wide.shape
@@ -228,7 +228,7 @@ def carry(diagonal: Array, link: Array, wide: Array, y: Array, rest: Array) -> N
                     y[j + 1, r, i] -= link[j, block, r - block * size, c] * back[block * size + c, i]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def selected_inverse(
     diagonal: Array, link: Array, wide: Array, border_covariance: Array, found: Array, ahead: Array
 ) -> None:

@@ -78,7 +78,7 @@ def localise(
     return found, order, ends
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def scatter_rows(
     chosen: Integers,
     slab: Integers,
@@ -155,7 +155,7 @@ def add_part(at: Integers, part: Array, part_gradient: Array, corner: Array, gra
             corner[at[i], at[j]] += part[i, j]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def add_motion(
     block: int,
     first: int,

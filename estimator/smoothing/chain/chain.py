@@ -9,17 +9,23 @@ Walks that no direct reading couples meet in the border only. Each group of them
 narrow as it is (`Strand`); C is the sum of what the groups say of the border.
 """
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from estimator.graph.dense import Array, factorise, inverse, mended, solve
 from estimator.graph.scatter import add_part
+from estimator.smoothing.chain.at_once import at_once
 from estimator.smoothing.chain.groups import Group
 from estimator.smoothing.chain.strand import Strand
 
 NOTHING = factorise(np.zeros((0, 0)))
+LARGE = 2_000_000
+"""From so many numbers on strands are worked on at once: it is a whole incident then, and somebody waits.
+Windows, which are solved every few seconds, stay on one core."""
+
+T = TypeVar("T")
 
 
 class Remainder(NamedTuple):
@@ -63,12 +69,23 @@ class Chain:
         self.promised = 0.0
         self._length = length
         self._cholesky = NOTHING
+        self._large = sum(strand.wide.size for strand in self.strands) >= LARGE
+
+    def each(self, work: Callable[..., T], *own: Iterable[object]) -> list[T]:
+        """What some work on each of its strands gives, in their order; at once where the chain is large.
+
+        Args:
+            work: takes a strand, and of each of `own` what is the strand's; changes that strand only.
+            own: as many of each as there are strands.
+        """
+        if self._large:
+            return at_once(work, self.strands, *own)
+        return [work(*row) for row in zip(self.strands, *own, strict=True)]
 
     def damp(self, damping: float) -> None:
         """Raise the diagonal by a share of itself (Marquardt): a shorter step, and more along the slope."""
         if damping > 0.0:
-            for strand in self.strands:
-                strand.damp(damping)
+            self.each(lambda strand: strand.damp(damping))
 
     def slope(self) -> Array:
         """The gradient, flat: keyframes, then the border."""
@@ -118,8 +135,7 @@ class Chain:
         Raises:
             ValueError: the matrix is not finite, or far from positive definite.
         """
-        for strand in self.strands:
-            strand.eliminate(self._length, mend)
+        self.each(lambda strand: strand.eliminate(self._length, mend))
         corner, gradient = self._corner()
         try:
             self._cholesky = factorise(corner)
@@ -142,8 +158,9 @@ class Chain:
         fixed = solve(self._cholesky, gradient)
         self.promised = 0.5 * (float(gradient @ fixed) + sum(strand.eased for strand in self.strands))
         steps = np.zeros((self._length, self.width))
-        for strand in self.strands:
-            steps[:, strand.group.columns] = strand.substitute(fixed[strand.group.lasting])
+        found = self.each(lambda strand: strand.substitute(fixed[strand.group.lasting]))
+        for strand, own in zip(self.strands, found, strict=True):
+            steps[:, strand.group.columns] = own
         return steps, fixed
 
     def response(self, right: Array, corner: Array) -> tuple[Array, Array]:
@@ -197,8 +214,10 @@ class Chain:
         size = self.width // max(walks, 1)
         found = np.zeros((self._length, walks, size, size))
         ahead = np.zeros((max(self._length - 1, 0), walks, size, size))
-        for strand in self.strands:
-            own, lasting = strand.group.walks, strand.group.lasting
-            if len(own):
-                found[:, own], ahead[:, own] = strand.covariances(border[np.ix_(lasting, lasting)])
+        groups = [strand.group for strand in self.strands]
+        corners = [border[np.ix_(group.lasting, group.lasting)] for group in groups]
+        own = self.each(Strand.covariances, corners)
+        for group, (of_each, with_next) in zip(groups, own, strict=True):
+            if len(group.walks):
+                found[:, group.walks], ahead[:, group.walks] = of_each, with_next
         return found, ahead, border

@@ -4,12 +4,32 @@ Elimination along it is operation 3 of paper A (eq. 17), keyframe after keyframe
 Kirchhoff matrix of its part of the border. Cost grows with the length of the chain, not with its cube.
 """
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 
 from estimator.graph.dense import Array, mended
 from estimator.graph.kernels import Integers, carry, eliminate, selected_inverse, substitute, take_off
-from estimator.graph.scatter import scatter_rows
+from estimator.graph.scatter import add_motion, scatter_rows
 from estimator.smoothing.chain.groups import Group, Placed
+from estimator.smoothing.keyframes.walks import Motion
+
+
+class Way(NamedTuple):
+    """How one of a group's walks goes.
+
+    Attributes:
+        block: which of the group's walks it is.
+        first: its first keyframe.
+        last: its last one.
+        motion: of its steps.
+    """
+
+    block: int
+    first: int
+    last: int
+    motion: Motion
 
 
 class Strand:
@@ -63,6 +83,24 @@ class Strand:
         if len(chosen):
             blocks = self.diagonal, self.wide, self.corner, self.corner_gradient
             scatter_rows(chosen, placed.slab, placed.columns, jacobian, information, residual, *blocks)
+
+    def go(self, ways: Sequence[Way]) -> None:
+        """Add how its walks go.
+
+        A keyframe at which a walk is not has its numbers for themselves: nothing depends on them.
+
+        Args:
+            ways: of its walks; the last keyframe of one may lie behind the chain's.
+        """
+        length, size = len(self.diagonal), self.link.shape[2]
+        for block, first, last, motion in ways:
+            own = slice(size * block, size * (block + 1))
+            if first > 0 or last + 1 < length:
+                self.diagonal[:first, own, own] = np.eye(size)
+                self.diagonal[last + 1 :, own, own] = np.eye(size)
+            count = max(min(last, length - 1) - first, 0)
+            steps = motion.transition[:count], motion.information[:count], motion.residual[:count]
+            add_motion(block, first, *steps, self.diagonal, self.link, self.wide)
 
     def damp(self, damping: float) -> None:
         """Raise the diagonal by a share of itself (Marquardt)."""

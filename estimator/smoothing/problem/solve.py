@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.fusion.memory.prior import Prior
-from estimator.graph.dense import Array
+from estimator.graph.dense import Array, Indices
 from estimator.graph.kernels import Integers
 from estimator.graph.robust import Weighted, prior_cost, total_cost
-from estimator.graph.scatter import add_motion
 from estimator.smoothing.chain.chain import Chain
+from estimator.smoothing.chain.strand import Strand, Way
 from estimator.smoothing.keyframes.going import Going
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.numbers import Numbers
 from estimator.smoothing.keyframes.priors import own_priors
-from estimator.smoothing.keyframes.walks import STATES, Motion, misfit
+from estimator.smoothing.keyframes.walks import Motion, misfit
 from estimator.smoothing.problem.aside import Aside
 from estimator.smoothing.problem.carried import Carried
 from estimator.smoothing.problem.coupled import Coupled
@@ -156,24 +156,13 @@ class Problem:
         layout, rows = self.layout, self.rows
         length = layout.length if until is None else until + 1
         chain = Chain(length, layout.width, self.coupled.groups.each)
+        ways: list[list[Way]] = [[] for _ in chain.strands]
         for i, (walk, motion) in enumerate(zip(layout.walks, motions, strict=True)):
             group, block = self.coupled.groups.home(i)
-            strand = chain.strands[group]
-            own = slice(STATES * block, STATES * (block + 1))
-            count = max(min(walk.last, length - 1) - walk.first, 0)
-            if walk.first > 0 or walk.last + 1 < length:
-                strand.diagonal[: walk.first, own, own] = np.eye(STATES)
-                strand.diagonal[walk.last + 1 :, own, own] = np.eye(STATES)
-            add_motion(
-                block,
-                walk.first,
-                motion.transition[:count],
-                motion.information[:count],
-                motion.residual[:count],
-                strand.diagonal,
-                strand.link,
-                strand.wide,
-            )
+            ways[group].append(Way(block, walk.first, walk.last, motion))
+        # Its memory is written first here: threads that do so wait for each other.
+        for strand, own in zip(chain.strands, ways, strict=True):
+            strand.go(own)
         if self._carried is not None:
             self._carried.add(chain, self.coupled.shared, x)
         if self.aside is not None:
@@ -186,9 +175,12 @@ class Problem:
             placed = placed._replace(slab=np.minimum(placed.slab, until))
             known = known._replace(slab=np.minimum(known.slab, until))
         off, ones = self._mean - x[self._at], np.ones((len(self._at), 1))
-        for strand, priors, readings in zip(chain.strands, known.parts, placed.parts, strict=True):
+
+        def add(strand: Strand, priors: Indices, readings: Indices) -> None:
             strand.add(known, priors, ones, certain, off)
             strand.add(placed, readings, linear.jacobian, information, weighted.residual)
+
+        chain.each(add, known.parts, placed.parts)
         return chain
 
     def _step(
@@ -234,9 +226,12 @@ class Problem:
         """
         rows, placed = self.rows, self.coupled.rows
         told = x, weighted.information, weighted.residual, signed, placed.slab, placed.columns
-        for strand, part in zip(chain.strands, self.coupled.pairs, strict=True):
+
+        def add(strand: Strand, part: Indices) -> None:
             if len(part):
                 add_bends(rows.readings, part, *told, strand.diagonal, strand.wide, strand.corner)
+
+        chain.each(add, self.coupled.pairs)
 
     def solve(
         self,

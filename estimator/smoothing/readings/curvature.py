@@ -15,7 +15,7 @@ from estimator.smoothing.readings.linear import Readings
 NOWHERE_M2 = 1e-6
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def add_bends(
     readings: Readings,
     chosen: Integers,
