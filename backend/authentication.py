@@ -2,6 +2,7 @@
 
 import hmac
 import secrets
+from contextlib import suppress
 from http.cookies import CookieError, SimpleCookie
 from pathlib import Path
 from urllib.parse import parse_qs
@@ -28,17 +29,29 @@ def access_token(data: Path) -> str:
     Args:
         data: folder of the deployment.
     """
+    with suppress(FileNotFoundError):
+        return existing_token(data)
     path = data / TOKEN_FILE
-    try:
-        token = path.read_text().strip()
-    except FileNotFoundError:
-        token = ""
-    if token:
-        return token
     token = secrets.token_urlsafe(24)
     path.touch(mode=0o600)
     path.chmod(0o600)
     path.write_text(token + "\n")
+    return token
+
+
+def existing_token(data: Path) -> str:
+    """The token of a data folder that a server has served from.
+
+    Args:
+        data: folder of the deployment.
+
+    Raises:
+        FileNotFoundError: there is none.
+    """
+    path = data / TOKEN_FILE
+    token = path.read_text().strip() if path.is_file() else ""
+    if not token:
+        raise FileNotFoundError(f"there is no access token in {path}: name the folder of the server's --data")
     return token
 
 

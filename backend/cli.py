@@ -18,7 +18,7 @@ from backend.bench.cli import bench
 from backend.log.incident import Clock
 from backend.refusals import refuse, refusing
 from backend.reports import to_standard_error
-from backend.settings import DATABASE_VARIABLE, LINK_TOKEN_VARIABLE, Settings
+from backend.settings import DATABASE_VARIABLE, LINK_TOKEN_VARIABLE, Settings, host_and_port
 
 app = typer.Typer(
     help="Where every firefighter is inside a burning building, how sure that is, and the way out.",
@@ -95,15 +95,21 @@ def worker(
     supervised: Supervised = False,
 ) -> None:
     """Follow the logs of active incidents and estimate positions."""
+    from backend.log.engine import understood
     from backend.supervision import end_with_parent
+
+    token = os.environ.get(LINK_TOKEN_VARIABLE, "")
+    if link is not None and not token:
+        refuse(f"--link needs the token that web process and worker share, in {LINK_TOKEN_VARIABLE}")
+    database_url = Settings(data=data, database=database).database_url
+    with refusing():
+        understood(database_url)
+        address = None if link is None else host_and_port(link)
     from backend.tracking.worker import run_worker
 
     if supervised:
         end_with_parent()
-    token = os.environ.get(LINK_TOKEN_VARIABLE, "")
-    if link is not None and not token:
-        refuse(f"--link needs the token that web process and worker share, in {LINK_TOKEN_VARIABLE}")
-    run_worker(Settings(data=data, database=database).database_url, link, token, holder)
+    run_worker(database_url, address, token, holder)
 
 
 @app.command()
@@ -122,14 +128,14 @@ def demo(
     supervised: Supervised = False,
 ) -> None:
     """Play a simulated incident through the public API, as gateways would."""
-    from backend.authentication import access_token
+    from backend.authentication import existing_token
     from backend.demo import play_until_stopped
     from backend.supervision import end_with_parent
 
     if supervised:
         end_with_parent()
-    token = None if data is None else access_token(data)
     with refusing():
+        token = None if data is None else existing_token(data)
         play_until_stopped(url, token, scenario, seed, speed, once)
 
 

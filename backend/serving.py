@@ -1,12 +1,16 @@
 """`firethread serve`: sockets, the web process, and the children beside it."""
 
 import asyncio
+import fcntl
 import ipaddress
 import os
 import secrets
 import socket
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext, suppress
+from pathlib import Path
 
+import structlog
 import uvicorn
 
 from backend.authentication import Authentication, access_token
@@ -14,8 +18,10 @@ from backend.ingest.front import TelemetryFirst
 from backend.interpreter import tune_for_serving
 from backend.main import build_app
 from backend.open_files import raise_open_files
-from backend.settings import LINK_TOKEN_VARIABLE, Settings
+from backend.settings import LINK_TOKEN_VARIABLE, Settings, host_and_port
 from backend.supervision import Child
+
+log = structlog.get_logger(__name__)
 
 
 class ConfigurationRefused(Exception):  # noqa: N818 - names the condition
@@ -65,6 +71,32 @@ def listen(host: str, port: int) -> socket.socket:
     return listener
 
 
+@contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """Have a folder to this process alone, until it ends, however suddenly.
+
+    Two servers on one SQLite database would both move its WAL into it, and pages may be lost by that: see
+    `make_engine`.
+
+    Raises:
+        ConfigurationRefused: another server has it.
+    """
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise ConfigurationRefused(
+            f"another firethread serves from {folder}: stop it, or give this one another --data"
+        ) from None
+    except OSError as error:  # some network file systems know no such locks
+        log.warning("the data folder cannot be held: see that no other server uses it", why=str(error))
+    try:
+        yield
+    finally:
+        os.close(handle)
+
+
 def url_of(listener: socket.socket) -> str:
     """The HTTP address of a listening socket."""
     host, port = listener.getsockname()[:2]
@@ -75,12 +107,21 @@ def serve(settings: Settings) -> None:
     """Serve until told to stop.
 
     Raises:
-        ConfigurationRefused: settings that would be unsafe or cannot work.
+        ConfigurationRefused: settings that would be unsafe or cannot work, or the folder is another server's.
+        ValueError: an address or the database's URL is none.
+        LogUnwritable: the database cannot be reached or written.
+        SchemaTooNew: a newer version has written the database.
     """
     check(settings)
     raise_open_files()
     settings.data.mkdir(parents=True, exist_ok=True)
-    listener, link = listen(settings.host, settings.port), listen(*_split(settings.link))
+    # On Postgres nothing under the folder is written but the token, once.
+    with held(settings.data) if settings.database is None else nullcontext():
+        _serve(settings)
+
+
+def _serve(settings: Settings) -> None:
+    listener, link = listen(settings.host, settings.port), listen(*host_and_port(settings.link))
     url = url_of(listener)
     link_token = os.environ.get(LINK_TOKEN_VARIABLE) or secrets.token_urlsafe(24)
     token = None if settings.open_access else access_token(settings.data)
@@ -151,11 +192,3 @@ def _children(settings: Settings, url: str, link: socket.socket, link_token: str
             arguments += ["--data", str(settings.data)]
         children.append(Child(arguments, {}))
     return children
-
-
-def _split(address: str) -> tuple[str, int]:
-    """Host and port of `HOST:PORT`."""
-    host, separator, port = address.rpartition(":")
-    if not separator or not port.isdigit():
-        raise ConfigurationRefused(f"--link takes HOST:PORT, not {address!r}")
-    return host, int(port)

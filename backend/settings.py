@@ -6,6 +6,19 @@ import msgspec
 
 LINK_TOKEN_VARIABLE = "FIRETHREAD_LINK_TOKEN"  # noqa: S105 - the variable's name, not a secret
 DATABASE_VARIABLE = "FIRETHREAD_DATABASE"
+MAX_PORT = 65_535
+
+
+def host_and_port(address: str) -> tuple[str, int]:
+    """Host and port of `HOST:PORT`; an IPv6 host may stand in brackets.
+
+    Raises:
+        ValueError: it is no such address.
+    """
+    host, _, port = address.rpartition(":")
+    if not host or not (port.isascii() and port.isdigit()) or int(port) > MAX_PORT:
+        raise ValueError(f"--link takes HOST:PORT, such as 127.0.0.1:7070, not {address!r}")
+    return host.removeprefix("[").removesuffix("]"), int(port)
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True):

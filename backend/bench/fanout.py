@@ -84,9 +84,10 @@ def _bare() -> list[Delivered]:
 
 def _ours() -> list[Delivered]:
     with socket.create_server(("127.0.0.1", 0)) as free:
-        link = f"127.0.0.1:{free.getsockname()[1]}"
+        link: tuple[str, int] = free.getsockname()
     token = secrets.token_urlsafe(16)
-    with served("--no-worker", "--link", link, environment={LINK_TOKEN_VARIABLE: token}) as (host, port):
+    options = ("--no-worker", "--link", f"{link[0]}:{link[1]}")
+    with served(*options, environment={LINK_TOKEN_VARIABLE: token}) as (host, port):
         incident = uvloop.run(_open_incident(host, port))
         path = f"/api/v1/incidents/{incident}/live"
         with _screens(host, port, path) as screens:
@@ -100,7 +101,9 @@ async def _open_incident(host: str, port: int) -> str:
     return incident
 
 
-async def _publish(link: str, token: str, incident: str, screens: "subprocess.Popen[str]") -> list[Delivered]:
+async def _publish(
+    link: tuple[str, int], token: str, incident: str, screens: "subprocess.Popen[str]"
+) -> list[Delivered]:
     """Send pictures as a worker does, at each rate, each one different in every node."""
     connected = asyncio.Event()
     worker = WorkerLink(link, token, "bench", on_connect=connected.set)

@@ -27,13 +27,15 @@ class WorkerLink:
     """Connects to the web process; see `backend.coordination.base.WorkerSide`.
 
     Args:
-        address: `host:port` of the web process's link; None: there is none.
+        address: host and port of the web process's link; None: there is none.
         token: the deployment's link token.
         holder: the worker's name.
         on_connect: called after each connect: the web process may have missed what was published before.
     """
 
-    def __init__(self, address: str | None, token: str, holder: str, on_connect: Callable[[], None]) -> None:
+    def __init__(
+        self, address: tuple[str, int] | None, token: str, holder: str, on_connect: Callable[[], None]
+    ) -> None:
         self._address = address
         self._hello = Hello(token, holder)
         self._on_connect = on_connect
@@ -47,7 +49,7 @@ class WorkerLink:
         """Begin to connect, and to stay connected."""
         if self._address is not None:
             self._task = asyncio.create_task(
-                self._stay_connected(self._address), name="link to the web process"
+                self._stay_connected(*self._address), name="link to the web process"
             )
 
     async def close(self) -> None:
@@ -73,13 +75,12 @@ class WorkerLink:
         self._received.clear()
         return received
 
-    async def _stay_connected(self, address: str) -> None:
-        host, _, port = address.rpartition(":")
+    async def _stay_connected(self, host: str, port: int) -> None:
         pause_s = FIRST_PAUSE_S
         while True:
             began = asyncio.get_running_loop().time()
             try:
-                await self._talk(host.strip("[]"), int(port))
+                await self._talk(host, port)
             except (OSError, TimeoutError, asyncio.IncompleteReadError) as error:
                 log.info("the web process is away", error=str(error) or type(error).__name__)
             except (Malformed, msgspec.DecodeError) as error:

@@ -30,9 +30,15 @@ class Client:
     Args:
         url: of the server, such as `http://127.0.0.1:8000`.
         token: its access token; None where it is open.
+
+    Raises:
+        ValueError: `url` is no address of a server.
     """
 
     def __init__(self, url: str, token: str | None) -> None:
+        # What is no address would never be answered, and be tried again for ever.
+        if not url.startswith(("http://", "https://")) or not httpx2.URL(url).host:
+            raise ValueError(f"--url takes an address such as http://127.0.0.1:8000, not {url!r}")
         headers = {} if token is None else {"authorization": f"Bearer {token}"}
         # A proxy of the environment has no business between a gateway and its server.
         self._http = httpx2.AsyncClient(

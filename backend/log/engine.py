@@ -29,6 +29,31 @@ POSTGRES_CONNECT: Mapping[str, object] = {
 }
 
 
+def understood(url: str) -> sa.URL:
+    """The parts of a database's URL.
+
+    Args:
+        url: SQLAlchemy URL.
+
+    Raises:
+        ValueError: it is none, or of neither SQLite nor Postgres; what it was is not repeated: it may hold a
+            password.
+    """
+    try:
+        parts = sa.engine.make_url(url)
+        kind, driver = parts.get_backend_name(), parts.get_driver_name()
+    except (sa.exc.ArgumentError, ValueError):
+        raise ValueError(
+            "--database takes a URL such as postgresql://USER:PASSWORD@HOST/NAME, and what was given is none"
+        ) from None
+    if (kind, driver) not in {("postgresql", "psycopg"), ("sqlite", "pysqlite")}:
+        shown = parts.drivername
+        raise ValueError(
+            f"the log is kept in SQLite or Postgres (psycopg), not in {shown!r}: check --database"
+        )
+    return parts
+
+
 def make_engine(url: str, *, checkpoints: bool = False) -> sa.Engine:
     """An engine for the log's database.
 
@@ -38,15 +63,13 @@ def make_engine(url: str, *, checkpoints: bool = False) -> sa.Engine:
             appends does; SQLite below 3.51.3 may lose pages where two connections checkpoint.
 
     Raises:
-        ValueError: neither SQLite nor Postgres.
+        ValueError: it is no URL, or of neither SQLite nor Postgres.
     """
-    backend = sa.engine.make_url(url).get_backend_name()
-    if backend == "postgresql":
-        return sa.create_engine(url, connect_args=dict(POSTGRES_CONNECT), pool_pre_ping=True)
-    if backend != "sqlite":
-        raise ValueError(f"the log is kept in SQLite or Postgres, not in {backend!r}: check --database")
+    parts = understood(url)
+    if parts.get_backend_name() == "postgresql":
+        return sa.create_engine(parts, connect_args=dict(POSTGRES_CONNECT), pool_pre_ping=True)
     engine = sa.create_engine(
-        url, connect_args={"timeout": BUSY_TIMEOUT_S, "check_same_thread": False, "cached_statements": 512}
+        parts, connect_args={"timeout": BUSY_TIMEOUT_S, "check_same_thread": False, "cached_statements": 512}
     )
 
     @sa.event.listens_for(engine, "connect")
@@ -104,7 +127,8 @@ def writing(engine: sa.Engine) -> Iterator[sa.Connection]:
         # After an input or output error a connection may be of no more use: the next one is new.
         engine.dispose()
         raise LogUnwritable(
-            f"The database cannot be written now ({_cause(error)}). Nothing is acknowledged: send it later.",
+            f"The database cannot be written now ({cause_of(error)}). "
+            "Nothing is acknowledged: send it later.",
             retry_after_s=RETRY_UNWRITABLE_S,
         ) from error
 
@@ -121,9 +145,10 @@ def reading(engine: sa.Engine) -> Iterator[sa.Connection]:
             yield connection
     except AWAY as error:
         engine.dispose()
-        raise LogUnreadable(f"The database cannot be read now ({_cause(error)}): try again.") from error
+        raise LogUnreadable(f"The database cannot be read now ({cause_of(error)}): try again.") from error
 
 
-def _cause(error: sa.exc.SQLAlchemyError) -> str:
+def cause_of(error: BaseException) -> str:
+    """The first line of what a driver says of a failure."""
     lines = str(error.__cause__ or error).splitlines()
     return lines[0] if lines else type(error).__name__

@@ -8,7 +8,8 @@ from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
 
-from backend.log.engine import make_engine, writing
+from backend.log.base import LogUnwritable
+from backend.log.engine import cause_of, make_engine, writing
 
 _POSTGRES_LOCK = 0x46495245
 """Any number, the same in every version: it keeps two processes from migrating at once."""
@@ -40,6 +41,12 @@ def prepare(url: str) -> None:
             config.attributes["connection"] = connection
             _refuse_newer(connection, ScriptDirectory.from_config(config), engine.url)
             command.upgrade(config, "head")
+    except LogUnwritable as error:
+        shown = engine.url.render_as_string(hide_password=True)
+        why = cause_of(error.__cause__ or error)
+        raise LogUnwritable(
+            f"The database {shown} cannot be opened: {why}. Check --data or --database, and whether it is up."
+        ) from error
     finally:
         engine.dispose()
 

@@ -5,10 +5,10 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
-from backend.errors import NotFound, Unavailable
+from backend.errors import NotFound
 from backend.log.engine import make_engine
 from backend.log.read import SqlLogReader
-from backend.tracking.fold import IncidentFold
+from backend.tracking.fold import IncidentFold, OtherState
 from backend.tracking.heads import Head
 from backend.tracking.reading import Decoded, read_block
 from estimator import trackers
@@ -124,8 +124,7 @@ def relative_from_state(database_url: str, head: Head, a: str, b: str) -> Relati
 
     Raises:
         NotFound: a node is not known.
-        OtherState: the stored state cannot be used: `relative_of_log` tells.
-        Unavailable: there is no state.
+        OtherState: there is no state yet, or none that can be used: `relative_of_log` tells.
         LogUnreadable: the database failed.
     """
     engine = make_engine(database_url)
@@ -134,7 +133,7 @@ def relative_from_state(database_url: str, head: Head, a: str, b: str) -> Relati
     finally:
         engine.dispose()
     if snapshot is None:
-        raise Unavailable("Nothing of this incident has been estimated yet: start an estimator worker.")
+        raise OtherState("no state is stored yet")
     return _relative(IncidentFold.restore(snapshot.state, head.tracker, head.settings, head.live), a, b)
 
 

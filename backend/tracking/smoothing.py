@@ -184,11 +184,11 @@ class Smoothing:
     async def relative(self, head: Head, a: str, b: str) -> Relative | None:
         """Where `b` is relative to `a` after the newest stored state; None where either is undecided.
 
-        Where that state cannot be used, the whole log is folded anew for it.
+        Where there is none yet, or it cannot be used, the whole log is folded anew for it.
 
         Raises:
             NotFound: a node is not known.
-            Unavailable: there is no state that could tell.
+            Unavailable: the process that does it ended.
             TooSlow: it takes long, or other sums are in the way.
         """
         _refuse_where_nothing_came(head)

@@ -36,7 +36,7 @@ log = structlog.get_logger(__name__)
 
 
 def run_worker(
-    database_url: str, link_address: str | None, token: str, holder: str, shown_hz: float = 10.0
+    database_url: str, link_address: tuple[str, int] | None, token: str, holder: str, shown_hz: float = 10.0
 ) -> None:
     """Follow all incidents until told to stop by SIGTERM or SIGINT.
 
@@ -44,7 +44,7 @@ def run_worker(
 
     Args:
         database_url: SQLAlchemy URL of the log.
-        link_address: `host:port` of the web process's link; None: nobody is told, the rows are stored.
+        link_address: host and port of the web process's link; None: nobody is told, the rows are stored.
         token: the deployment's link token.
         holder: this worker's name: one that is started again under it takes its incidents at once, unless the
             process that had them still runs.
@@ -57,7 +57,12 @@ class Worker:
     """All incidents of one process; see `run_worker`."""
 
     def __init__(
-        self, database_url: str, link_address: str | None, token: str, holder: str, shown_hz: float
+        self,
+        database_url: str,
+        link_address: tuple[str, int] | None,
+        token: str,
+        holder: str,
+        shown_hz: float,
     ) -> None:
         self._engine = make_engine(database_url)
         self._reader = SqlLogReader(self._engine)
@@ -71,6 +76,7 @@ class Worker:
         self._not_before: dict[str, float] = {}
         self._answering: set[asyncio.Task[None]] = set()
         self._stop = asyncio.Event()
+        self._away = False
 
     async def run(self) -> None:
         """Follow all incidents until told to stop."""
@@ -109,7 +115,13 @@ class Worker:
             for head in await asyncio.to_thread(heads, self._engine, list(self._tasks)):
                 self._hear_of(head)
         except Unavailable as error:
-            log.warning("the database is away", error=str(error))
+            if not self._away:  # it is looked for twice a second, for hours perhaps
+                log.warning("the database is away", error=str(error))
+            self._away = True
+        else:
+            if self._away:
+                log.info("the database is there again")
+            self._away = False
 
     def _hear_of(self, head: Head) -> None:
         now = asyncio.get_running_loop().time()

@@ -23,19 +23,21 @@ def listener(port: int = 0) -> socket.socket:
 
 
 @asynccontextmanager
-async def web_side(pictures: list[Picture], port: int = 0) -> AsyncIterator[tuple[WebLink, str]]:
+async def web_side(pictures: list[Picture], port: int = 0) -> AsyncIterator[tuple[WebLink, tuple[str, int]]]:
     with listener(port) as sock:
         web = WebLink(sock, TOKEN)
         web.on_picture(pictures.append)
         await web.start()
         try:
-            yield web, f"127.0.0.1:{sock.getsockname()[1]}"
+            yield web, sock.getsockname()
         finally:
             await web.stop()
 
 
 @asynccontextmanager
-async def worker_side(address: str, token: str = TOKEN) -> AsyncIterator[tuple[WorkerLink, asyncio.Event]]:
+async def worker_side(
+    address: tuple[str, int], token: str = TOKEN
+) -> AsyncIterator[tuple[WorkerLink, asyncio.Event]]:
     connected = asyncio.Event()
     worker = WorkerLink(address, token, "north", connected.set)
     worker.start()
@@ -83,8 +85,7 @@ def test_a_worker_that_falls_silent_is_no_longer_taken_to_be_there(monkeypatch: 
 
     async def go() -> None:
         async with web_side([]) as (web, address):
-            host, _, port = address.rpartition(":")
-            reader, writer = await asyncio.open_connection(host, int(port))
+            reader, writer = await asyncio.open_connection(*address)
             writer.write(framed(Hello(TOKEN, "hangs")))
             await until(lambda: web.connected)
             await until(lambda: not web.connected)
@@ -153,7 +154,7 @@ def test_a_worker_comes_back_after_the_web_process_has_started_again() -> None:
     async def go() -> None:
         pictures: list[Picture] = []
         port = free_port()
-        async with worker_side(f"127.0.0.1:{port}") as (worker, connected):
+        async with worker_side(("127.0.0.1", port)) as (worker, connected):
             for round_ in range(3):
                 connected.clear()
                 async with web_side(pictures, port) as (web, _):
@@ -193,8 +194,7 @@ def test_noise_on_the_port_harms_nobody(noise: bytes) -> None:
     async def go() -> None:
         pictures: list[Picture] = []
         async with web_side(pictures) as (_, address):
-            host, port = address.split(":")
-            _, writer = await asyncio.open_connection(host, int(port))
+            _, writer = await asyncio.open_connection(*address)
             writer.write(noise)
             async with worker_side(address) as (worker, connected):
                 await connected.wait()
@@ -218,7 +218,7 @@ def test_a_web_process_that_does_not_read_never_stops_the_worker_and_then_gets_t
             web = WebLink(sock, TOKEN)
             web.on_picture(slowly)
             await web.start()
-            async with worker_side(f"127.0.0.1:{sock.getsockname()[1]}") as (worker, connected):
+            async with worker_side(sock.getsockname()) as (worker, connected):
                 await connected.wait()
                 for seq in range(1, 2001):
                     worker.publish(Picture("i1", seq, bytes(100_000)))

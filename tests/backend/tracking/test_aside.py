@@ -147,6 +147,18 @@ def test_where_the_stored_state_is_refused_the_log_tells_the_relative_position(
     smoothing.close()
 
 
+def test_where_no_state_is_stored_yet_the_log_tells_the_relative_position(
+    sqlite_url: str, store: IncidentStore, write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    incident = store.create("a worker was killed in its first half minute", "recorded").id
+    write(incident, walk(5))
+    smoothing = Smoothing(sqlite_url)
+    monkeypatch.setattr(smoothing, "_aside", at_once)
+    found = asyncio.run(smoothing.relative(head_of(store.get(incident)), "ff1", "ff2"))
+    assert found is not None
+    smoothing.close()
+
+
 async def at_once(function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
     """Stands in for the process aside."""
     return function(*args, **kwargs)
