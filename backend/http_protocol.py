@@ -1,7 +1,8 @@
-"""An HTTP protocol for uvicorn that does not wait for a request's header without end.
+"""An HTTP protocol for uvicorn that does not wait for a request without end, nor without bound.
 
 A connection on which no request comes holds a file descriptor: as many as the process may have of them shut
-honest gateways out. uvicorn itself times out only what is idle after an answer.
+honest gateways out. uvicorn itself times out only what is idle after an answer, and a vehicle that drives out
+of its network in the middle of a batch never closes its connection.
 """
 
 import asyncio
@@ -9,16 +10,29 @@ from typing import Any
 
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
+from backend.errors import NotUnderstood
+
 HEADER_WITHIN_S = 10.0
 """On a poor radio link a header of some hundred bytes takes a second or two."""
 
+MAX_HEADER_BYTES = 64 * 1024
+"""A header with the longest cookies and addresses that browsers send has a quarter of it."""
 
-class HeaderWithin(HttpToolsProtocol):
-    """uvicorn's HTTP protocol; a connection whose request has no whole header in time is closed."""
+BODY_SILENT_S = 60.0
+"""A link that is lost for longer has lost its connection too: retransmissions come so far apart by then."""
+
+
+class RequestWithin(HttpToolsProtocol):
+    """uvicorn's HTTP protocol; a connection whose request does not come on in time is closed.
+
+    What is no HTTP is refused in the form in which any request is.
+    """
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:  # uvicorn's own signature, whatever it is
         super().__init__(*args, **kwargs)
-        self._header_due: asyncio.TimerHandle | None = None
+        self._due: asyncio.TimerHandle | None = None
+        self._in_body = False
+        self._header_bytes = 0
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as uvicorn
         """Wait for the first request's header."""
@@ -26,27 +40,59 @@ class HeaderWithin(HttpToolsProtocol):
         self._await_header()
 
     def data_received(self, data: bytes) -> None:
-        """Wait for the header of what begins on a connection that was idle."""
+        """Wait for the header of what begins on a connection that was idle, and for the rest of a body."""
         if self.timeout_keep_alive_task is not None:
             self._await_header()
+        in_header = self._due is not None and not self._in_body
         super().data_received(data)
+        if self._in_body:
+            self._wait(BODY_SILENT_S)
+        elif in_header and self._due is not None:
+            self._header_bytes += len(data)
+            if self._header_bytes > MAX_HEADER_BYTES and not self.transport.is_closing():
+                self.send_400_response(f"The header of the request is larger than {MAX_HEADER_BYTES} bytes.")
 
     def on_headers_complete(self) -> None:
         """It is here."""
         self._stop_waiting()
+        self._in_body = True
         super().on_headers_complete()
+
+    def on_message_complete(self) -> None:
+        """The body is here as well, if there is one."""
+        self._stop_waiting()
+        self._in_body = False
+        super().on_message_complete()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Nothing is waited for any more."""
         self._stop_waiting()
         super().connection_lost(exc)
 
+    def send_400_response(self, msg: str) -> None:
+        """Refuse what is no HTTP, and close."""
+        problem = NotUnderstood(msg)
+        body = problem.body()
+        headers = problem.headers() | {"content-length": str(len(body)), "connection": "close"}
+        lines = ["HTTP/1.1 400 Bad Request", *(f"{name}: {value}" for name, value in headers.items()), "", ""]
+        self.transport.write("\r\n".join(lines).encode() + body)
+        self.transport.close()
+
     def _await_header(self) -> None:
+        self._header_bytes = 0
+        self._wait(HEADER_WITHIN_S)
+
+    def _wait(self, within_s: float) -> None:
         self._stop_waiting()
-        # The handler that closes what is idle does the same here.
-        self._header_due = self.loop.call_later(HEADER_WITHIN_S, self.timeout_keep_alive_handler)
+        self._due = self.loop.call_later(within_s, self._give_up, within_s)
+
+    def _give_up(self, within_s: float) -> None:
+        if self.flow.read_paused:  # it is we who do not read
+            self._wait(within_s)
+        elif not self.transport.is_closing():
+            self.transport.close()
 
     def _stop_waiting(self) -> None:
-        if self._header_due is not None:
-            self._header_due.cancel()
-            self._header_due = None
+        if self._due is not None:
+            self._due.cancel()
+            self._due = None

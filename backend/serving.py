@@ -132,7 +132,7 @@ def _serve(settings: Settings) -> None:
         TelemetryFirst(app, telemetry, Authentication(telemetry.handle, token)),
         proxy_headers=False,
         loop="uvloop",
-        http="backend.http_protocol:HeaderWithin",
+        http="backend.http_protocol:RequestWithin",
         ws="backend.live.push_protocol:PushProtocol",
         ws_per_message_deflate=False,
         ws_max_size=64 * 1024,

@@ -69,9 +69,9 @@ def judge(body: bytes, max_readings: int, now: float | None) -> Judged:
     """
     try:
         batch = decode_batch(body)
-    except msgspec.DecodeError:
+    except (msgspec.DecodeError, UnicodeDecodeError):  # the latter tells a place within some text
         return _judge_each(body, max_readings, now)
-    except (UnicodeDecodeError, RecursionError) as error:
+    except RecursionError as error:
         raise _no_json(error) from error
     _check_count(len(batch.readings), max_readings)
     late_limit = _horizon(batch.sent, now)

@@ -1,12 +1,14 @@
-"""Connections on which no request comes are closed."""
+"""Connections on which no request comes, or only a part of one, are closed."""
 
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
+import msgspec
 import pytest
 import uvicorn
-from starlette.types import Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Scope, Send
+from websockets.asyncio.client import connect
 
 from backend import http_protocol
 from backend.serving import listen
@@ -30,12 +32,12 @@ class Answering:
 
 
 @asynccontextmanager
-async def served(app: Answering) -> AsyncIterator[int]:
+async def served(app: ASGIApp) -> AsyncIterator[int]:
     """A server on a free port."""
     with listen("127.0.0.1", 0) as listener:
         config = uvicorn.Config(
             app,
-            http="backend.http_protocol:HeaderWithin",
+            http="backend.http_protocol:RequestWithin",
             lifespan="off",
             log_level="error",
             timeout_keep_alive=3600,
@@ -102,5 +104,101 @@ def test_who_has_told_its_request_waits_for_the_answer(monkeypatch: pytest.Monke
             assert b"204" in await first[0].readuntil(b"\r\n\r\n")
             for _, writer in (first, later):
                 writer.close()
+
+    asyncio.run(go())
+
+
+class Reading:
+    """An application that reads a body and says how it ended."""
+
+    def __init__(self) -> None:
+        self.ended: asyncio.Queue[str] = asyncio.Queue()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        del scope
+        message = await receive()
+        while message["type"] == "http.request" and message.get("more_body", False):
+            message = await receive()
+        await self.ended.put(message["type"])
+        if message["type"] == "http.request":
+            await send({"type": "http.response.start", "status": 204, "headers": []})
+            await send({"type": "http.response.body", "body": b""})
+
+
+@pytest.mark.parametrize("part", [b"", b"half of what was announced"])
+def test_a_body_that_stops_coming_is_given_up(monkeypatch: pytest.MonkeyPatch, part: bytes) -> None:
+    monkeypatch.setattr(http_protocol, "BODY_SILENT_S", 0.05)
+
+    async def go() -> None:
+        app = Reading()
+        async with asyncio.timeout(PATIENCE_S), served(app) as port:
+            reader, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(HEADER + b"content-length: 1000\r\n\r\n" + part)
+            assert await reader.read() == b""
+            assert await app.ended.get() == "http.disconnect"
+            writer.close()
+
+    asyncio.run(go())
+
+
+def test_a_body_that_comes_slowly_is_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(http_protocol, "BODY_SILENT_S", 0.5)
+
+    async def go() -> None:
+        app = Reading()
+        async with asyncio.timeout(PATIENCE_S), served(app) as port:
+            reader, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(HEADER + b"content-length: 8\r\n\r\n")
+            for _ in range(8):
+                await asyncio.sleep(0.1)
+                writer.write(b"x")
+            assert b"204" in await reader.readuntil(b"\r\n\r\n")
+            assert await app.ended.get() == "http.request"
+            # What was waited for is forgotten: an idle connection stays.
+            await asyncio.sleep(0.7)
+            writer.write(HEADER + b"\r\n")
+            assert b"204" in await reader.readuntil(b"\r\n\r\n")
+            writer.close()
+
+    asyncio.run(go())
+
+
+@pytest.mark.parametrize("sent", [b"no HTTP\r\n\r\n", HEADER + b"x: " + 70_000 * b"x"])
+def test_what_is_no_request_is_refused_in_the_form_of_any_refusal(sent: bytes) -> None:
+    async def go() -> None:
+        async with asyncio.timeout(PATIENCE_S), served(Answering()) as port:
+            reader, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(sent)
+            head = await reader.readuntil(b"\r\n\r\n")
+            assert head.startswith(b"HTTP/1.1 400 ")
+            assert b"content-type: application/problem+json\r\n" in head
+            assert msgspec.json.decode(await reader.read())["status"] == 400
+            writer.close()
+
+    asyncio.run(go())
+
+
+async def hearing(scope: Scope, receive: Receive, send: Send) -> None:
+    """An application that takes a socket and says back what it hears."""
+    del scope
+    await receive()
+    await send({"type": "websocket.accept"})
+    while (message := await receive())["type"] == "websocket.receive":
+        await send({"type": "websocket.send", "text": message["text"]})
+
+
+def test_a_socket_may_be_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(http_protocol, "HEADER_WITHIN_S", 0.05)
+    monkeypatch.setattr(http_protocol, "BODY_SILENT_S", 0.05)
+
+    async def go() -> None:
+        async with (
+            asyncio.timeout(PATIENCE_S),
+            served(hearing) as port,
+            connect(f"ws://127.0.0.1:{port}/", proxy=None) as screen,
+        ):
+            await asyncio.sleep(0.2)
+            await screen.send("still here")
+            assert await screen.recv() == "still here"
 
     asyncio.run(go())

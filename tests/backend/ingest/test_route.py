@@ -131,6 +131,11 @@ def test_what_is_no_batch_is_refused_and_stores_nothing(
     assert gateway.woken == []
 
 
+def test_where_a_body_stops_being_text_is_told_by_its_bytes(gateway: Field) -> None:
+    body = b'{"gateway":"g","batch":"b","readings":[{"kind":"node","t":1,"node":"n\xff"}]}'
+    assert f"at byte {body.index(255)}" in refused(gateway.post(gateway.incident(), body), 400)
+
+
 def test_a_batch_that_lacks_a_field_is_told_which(gateway: Field) -> None:
     answer = gateway.post(gateway.incident(), b'{"gateway":"g","readings":[]}')
     refused(answer, 400)
