@@ -16,6 +16,7 @@ from backend.errors import NotAuthenticated, Problem
 from backend.problems import deny
 
 COOKIE = "firethread"
+SOCKET_TOKEN = "token"  # noqa: S105 - the parameter's name, not a secret
 TOKEN_FILE = "access-token"  # noqa: S105 - the file's name, not a secret
 PROTECTED_PREFIX = "/api/"
 SESSION_PATH = "/api/v1/session"
@@ -101,7 +102,7 @@ class Authentication:
                 if cookie is not None and hmac.compare_digest(cookie.value.encode(), self.token):
                     return True
         if scope["type"] == "websocket":
-            given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[0]
+            given = parse_qs(scope["query_string"].decode("latin-1")).get(SOCKET_TOKEN, [""])[0]
             return hmac.compare_digest(given.encode(), self.token)
         return False
 

@@ -5,7 +5,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 
 from backend import api_docs, openapi, problems
 from backend.authentication import Authentication, session_router
@@ -24,14 +24,13 @@ from backend.log.group_commit import GroupCommit
 from backend.log.incidents import IncidentStore
 from backend.log.migrate import prepare
 from backend.log.read import SqlLogReader
+from backend.parameters import known_parameters
 from backend.replay.socket import replay_router
 from backend.screen_files import Screen
 from backend.settings import Settings
 from backend.tracking.evidence_routes import evidence_router
 from backend.tracking.routes import tracking_router
 from backend.tracking.smoothing import Smoothing
-
-DESCRIPTION = "Where every firefighter is inside a burning building, how sure that is, and the way out."
 
 
 def build_app(settings: Settings, *, token: str | None, link: socket.socket, link_token: str) -> FastAPI:
@@ -74,7 +73,7 @@ def build_app(settings: Settings, *, token: str | None, link: socket.socket, lin
     app = FastAPI(
         title="Firethread",
         version=version("firethread"),
-        description=DESCRIPTION,
+        description=openapi.DESCRIPTION.strip(),
         lifespan=lifespan,
         docs_url=None,  # FastAPI's own loads from afar
         redoc_url=None,
@@ -96,9 +95,9 @@ def build_app(settings: Settings, *, token: str | None, link: socket.socket, lin
         live_router(hub),
         replay_router(incidents, reader),
         session_router(token),
-        health_router(engine, workers, lambda: writer.refusal),
     ):
-        app.include_router(router)
+        app.include_router(router, dependencies=[Depends(known_parameters)])
+    app.include_router(health_router(engine, workers, lambda: writer.refusal))
     openapi.install(app)
     api_docs.install(app)
     app.mount("/", Screen(), name="screen")

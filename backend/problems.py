@@ -1,7 +1,6 @@
 """How FastAPI answers what goes wrong: always in the contract's form."""
 
 from collections.abc import Sequence
-from http import HTTPStatus
 
 import structlog
 from fastapi import FastAPI, Request
@@ -12,6 +11,7 @@ from starlette.routing import compile_path
 from starlette.websockets import WebSocket
 
 from backend.errors import (
+    PROBLEM_MEDIA_TYPE,
     Conflict,
     FieldError,
     Invalid,
@@ -26,6 +26,8 @@ from backend.errors import (
     Unavailable,
     WrongMediaType,
 )
+
+NO_JSON = "the body is no JSON; send one JSON object in UTF-8"
 
 log = structlog.get_logger()
 
@@ -70,7 +72,8 @@ def install(app: FastAPI) -> None:
         # The screen's files lie under every path: what no route of the API takes ends there, as not found.
         if kind is NotFound and methods and request.method not in methods:
             kind = NotAllowed
-        response = answer(kind(f"{request.method} {request.url.path}: {kind.title.lower()}"))
+        detail = f"{request.method} {request.url.path}: {kind.title.lower()}"
+        response = answer(kind(NO_JSON if kind is NotUnderstood else detail))
         response.headers.update(error.headers or {})
         if kind is NotAllowed:
             response.headers["allow"] = ", ".join(sorted(methods))
@@ -106,22 +109,26 @@ async def deny(socket: WebSocket, problem: Problem) -> None:
 
 
 def from_validation(faults: Sequence[dict[str, object]]) -> Problem:
-    """The problem that pydantic's findings are: 400 where there is no JSON, else 422 by field."""
+    """The problem that findings are: 400 for no JSON, 415 where it is not announced, else 422 by field."""
     errors = []
     for fault in faults:
         if fault["type"] == "json_invalid":
-            return NotUnderstood("the body is no JSON; send one JSON object in UTF-8")
+            return NotUnderstood(NO_JSON)
+        if fault["loc"] == ("body",) and isinstance(fault.get("input"), bytes):  # not read as JSON
+            return WrongMediaType(
+                "The body is not announced as JSON: send it with the content type application/json."
+            )
         place = [str(part) for part in fault["loc"]]  # type: ignore[attr-defined]  # pydantic types it as object
-        errors.append(FieldError(code=str(fault["type"]), field=".".join(place), message=str(fault["msg"])))
+        message = str(fault["msg"]).removeprefix("Value error, ")  # pydantic's own, before ours
+        errors.append(FieldError(code=str(fault["type"]), field=".".join(place), message=message))
     return Invalid("; ".join(f"{error.field}: {error.message}" for error in errors), errors)
 
 
 def openapi_responses(*statuses: int) -> dict[int | str, dict[str, object]]:
-    """The refusals of a route, for the OpenAPI document."""
-    return {
-        status: {
-            "description": BY_STATUS[status].title if status in BY_STATUS else HTTPStatus(status).phrase,
-            "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}},
-        }
-        for status in statuses
-    }
+    """The refusals of a route, for the OpenAPI document.
+
+    Args:
+        statuses: of `BY_STATUS`.
+    """
+    problem = {PROBLEM_MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
+    return {status: {"description": BY_STATUS[status].title, "content": problem} for status in statuses}

@@ -1,7 +1,7 @@
 """Routes that tell why a fix is where it is, and what would make it surer: `evidence`, `advice`."""
 
 import asyncio
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
 from fastapi import APIRouter
@@ -10,7 +10,7 @@ from starlette.responses import Response
 from backend.errors import Conflict
 from backend.log.incidents import IncidentStore
 from backend.tracking.heads import head_of
-from backend.tracking.routes import Moment, NodeName, answers_with, as_json
+from backend.tracking.routes import NodeName, answers_with, as_json, moment
 from backend.tracking.smoothing import Smoothing
 from estimator.evidence import Advice, Evidence
 
@@ -24,10 +24,12 @@ def evidence_router(incidents: IncidentStore, smoothing: Smoothing) -> APIRouter
     """
     router = APIRouter(prefix="/api/v1/incidents/{incident}", tags=["picture"])
 
-    @router.get(
-        "/evidence", operation_id="get_evidence", responses=answers_with("Evidence", 404, 409, 503, 504)
-    )
-    async def evidence(incident: str, node: NodeName, t: Moment = None) -> Response:
+    @router.get("/evidence", operation_id="get_evidence", responses=answers_with("Evidence", 409, 504))
+    async def evidence(
+        incident: str,
+        node: NodeName,
+        t: Annotated[float | None, moment("of which moment, Unix seconds; the newest, without it")] = None,
+    ) -> Response:
         """Which measurements hold a node's fix where it is, and which were rejected.
 
         It is what the whole log says now of everything up to `t` (without it: up to the newest epoch). An
@@ -40,13 +42,13 @@ def evidence_router(incidents: IncidentStore, smoothing: Smoothing) -> APIRouter
             raise Conflict(f"The position of {node!r} is not decided {when}, or nobody doubts it.")
         return as_json(found)
 
-    @router.get("/advice", operation_id="get_advice", responses=answers_with("Advice", 404, 409, 503, 504))
+    @router.get("/advice", operation_id="get_advice", responses=answers_with("Advice", 409, 504))
     async def advice(incident: str, node: NodeName) -> Response:
         """What would shrink the uncertainty of a node's newest position most."""
         known = await asyncio.to_thread(incidents.get, incident)
         found = await smoothing.advice(head_of(known), node)
         if found is None:
-            raise Conflict(f"The position of {node!r} is not decided yet.")
+            raise Conflict(f"The position of {node!r} is not decided yet, or nobody doubts it.")
         return as_json(found)
 
     return router

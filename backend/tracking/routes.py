@@ -3,19 +3,20 @@
 import asyncio
 import math
 import time
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 from fastapi import APIRouter, Query
 from starlette.responses import Response
 
 from backend.coordination.base import WebSide
-from backend.errors import PROBLEM_MEDIA_TYPE, Conflict, FieldError, Invalid, NotFound, TooSlow, Unavailable
+from backend.errors import Conflict, FieldError, Invalid, NotFound, TooSlow, Unavailable
 from backend.live.frame import RelativePosition, Track, Tracks
 from backend.live.hub import Hub
 from backend.live.past import frame_of, row_at
 from backend.log.base import LogReader
 from backend.log.incidents import IncidentStore
+from backend.problems import openapi_responses
 from backend.tracking.heads import head_of
 from backend.tracking.smoothing import Smoothing
 from backend.tracking.tracks import live_tracks, rounded
@@ -24,9 +25,13 @@ from estimator.estimate import Relative, TrackPoint
 ASK_WITHIN_S = 5.0
 LATEST_T = 4_102_444_800.0
 
-Moment = Annotated[float | None, Query(ge=0.0, le=LATEST_T, allow_inf_nan=False)]
-NodeName = Annotated[str, Query(min_length=1, max_length=64)]
-From = Annotated[float | None, Query(alias="from", ge=0.0, le=LATEST_T, allow_inf_nan=False)]
+
+def moment(description: str, alias: str | None = None) -> Any:
+    """A parameter that is a moment in Unix seconds."""
+    return Query(alias=alias, ge=0.0, le=LATEST_T, allow_inf_nan=False, description=description)
+
+
+NodeName = Annotated[str, Query(min_length=1, max_length=64, description="name of the node")]
 
 
 def tracking_router(
@@ -43,12 +48,16 @@ def tracking_router(
     """
     router = APIRouter(prefix="/api/v1/incidents/{incident}", tags=["picture"])
 
-    @router.get("/frame", operation_id="get_frame", responses=answers_with("Frame", 404, 503, 504))
+    @router.get("/frame", operation_id="get_frame", responses=answers_with("Frame", 504))
     async def frame(
         incident: str,
-        t: Moment = None,
-        min_seq: Annotated[int, Query(ge=0, le=2**62)] = 0,
-        timeout_s: Annotated[float, Query(ge=0.0, le=60.0, allow_inf_nan=False)] = 10.0,
+        t: Annotated[
+            float | None, moment("when it was known and shown, Unix seconds; now, without it")
+        ] = None,
+        min_seq: Annotated[int, Query(ge=0, le=2**62, description="log entry that is waited for")] = 0,
+        timeout_s: Annotated[
+            float, Query(ge=0.0, le=60.0, allow_inf_nan=False, description="how long it is waited for (s)")
+        ] = 10.0,
     ) -> Response:
         """The picture now, or as it was known and shown at `t`.
 
@@ -70,7 +79,7 @@ def tracking_router(
     @router.get(
         "/relative",
         operation_id="get_relative",
-        responses=answers_with("RelativePosition", 404, 409, 503, 504),
+        responses=answers_with("RelativePosition", 409, 504),
     )
     async def relative(incident: str, a: NodeName, b: NodeName) -> Response:
         """Where node `b` is relative to node `a`, from their joint covariance."""
@@ -93,14 +102,19 @@ def tracking_router(
             relative_position(Relative(delta_m=answer.delta_m, covariance_m2=answer.covariance_m2))
         )
 
-    @router.get("/tracks", operation_id="get_tracks", responses=answers_with("Tracks", 404, 503, 504))
+    @router.get("/tracks", operation_id="get_tracks", responses=answers_with("Tracks", 504))
     async def tracks(
         incident: str,
-        node: Annotated[str | None, Query(min_length=1, max_length=64)] = None,
-        start: From = None,
-        to: Moment = None,
+        node: Annotated[
+            str | None, Query(min_length=1, max_length=64, description="only this one; all, without it")
+        ] = None,
+        start: Annotated[float | None, moment("first second, Unix seconds", alias="from")] = None,
+        to: Annotated[float | None, moment("last second, Unix seconds")] = None,
         step: Annotated[int, Query(ge=1, le=3600, description="seconds from point to point")] = 1,
-        view: Literal["live", "smoothed"] = "live",
+        view: Annotated[
+            Literal["live", "smoothed"],
+            Query(description="as it stood at each second, or the best estimate with everything known now"),
+        ] = "live",
         decimals: Annotated[
             int | None, Query(ge=0, le=9, description="of metres and m²; all that there are, without it")
         ] = None,
@@ -121,27 +135,15 @@ def tracking_router(
     return router
 
 
-REFUSALS = {
-    404: "There is no such incident or node",
-    409: "The position of a node is not decided yet",
-    503: "A part that the answer needs is away",
-    504: "What was waited for did not come in time",
-}
-
-
 def answers_with(schema: str, *refusals: int) -> dict[int | str, dict[str, object]]:
     """The answer and the refusals of a route, for the OpenAPI document.
 
     Args:
         schema: name of the answer's schema.
-        refusals: their statuses.
+        refusals: statuses of those that not every route of an incident has.
     """
     content = {"application/json": {"schema": {"$ref": f"#/components/schemas/{schema}"}}}
-    problem = {PROBLEM_MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
-    responses: dict[int | str, dict[str, object]] = {200: {"content": content, "description": "OK"}}
-    for status in refusals:
-        responses[status] = {"content": problem, "description": REFUSALS[status]}
-    return responses
+    return {200: {"content": content, "description": "OK"}, **openapi_responses(*refusals)}
 
 
 def as_json(answer: msgspec.Struct) -> Response:

@@ -1373,6 +1373,15 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The content type or encoding is not taken here */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
             /** @description A field or parameter is not valid */
             422: {
                 headers: {
@@ -1398,6 +1407,7 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
+                /** @description its id, as `GET /api/v1/incidents` lists it */
                 incident: string;
             };
             cookie?: never;
@@ -1440,15 +1450,6 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request contradicts what is there */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
             /** @description A field or parameter is not valid */
             422: {
                 headers: {
@@ -1467,15 +1468,6 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description What was waited for did not come in time */
-            504: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
         };
     };
     change_incident: {
@@ -1483,6 +1475,7 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
+                /** @description its id, as `GET /api/v1/incidents` lists it */
                 incident: string;
             };
             cookie?: never;
@@ -1547,6 +1540,15 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The content type or encoding is not taken here */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
             /** @description A field or parameter is not valid */
             422: {
                 headers: {
@@ -1558,15 +1560,6 @@ export interface operations {
             };
             /** @description A part that is needed is not available */
             503: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description What was waited for did not come in time */
-            504: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -1588,6 +1581,7 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description its id, as `GET /api/v1/incidents` lists it */
                 incident: string;
             };
             cookie?: never;
@@ -1630,15 +1624,6 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request contradicts what is there */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
             /** @description A field or parameter is not valid */
             422: {
                 headers: {
@@ -1657,26 +1642,21 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description What was waited for did not come in time */
-            504: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
         };
     };
     get_frame: {
         parameters: {
             query?: {
+                /** @description when it was known and shown, Unix seconds; now, without it */
                 t?: number | null;
+                /** @description log entry that is waited for */
                 min_seq?: number;
+                /** @description how long it is waited for (s) */
                 timeout_s?: number;
             };
             header?: never;
             path: {
+                /** @description its id, as `GET /api/v1/incidents` lists it */
                 incident: string;
             };
             cookie?: never;
@@ -1719,15 +1699,6 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request contradicts what is there */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
             /** @description A field or parameter is not valid */
             422: {
                 headers: {
@@ -1760,11 +1731,14 @@ export interface operations {
     get_relative: {
         parameters: {
             query: {
+                /** @description name of the node */
                 a: string;
+                /** @description name of the node */
                 b: string;
             };
             header?: never;
             path: {
+                /** @description its id, as `GET /api/v1/incidents` lists it */
                 incident: string;
             };
             cookie?: never;
@@ -1848,17 +1822,22 @@ export interface operations {
     get_tracks: {
         parameters: {
             query?: {
+                /** @description only this one; all, without it */
                 node?: string | null;
+                /** @description first second, Unix seconds */
                 from?: number | null;
+                /** @description last second, Unix seconds */
                 to?: number | null;
                 /** @description seconds from point to point */
                 step?: number;
+                /** @description as it stood at each second, or the best estimate with everything known now */
                 view?: "live" | "smoothed";
                 /** @description of metres and m²; all that there are, without it */
                 decimals?: number | null;
             };
             header?: never;
             path: {
+                /** @description its id, as `GET /api/v1/incidents` lists it */
                 incident: string;
             };
             cookie?: never;
@@ -1901,15 +1880,6 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request contradicts what is there */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
             /** @description A field or parameter is not valid */
             422: {
                 headers: {
@@ -1942,11 +1912,14 @@ export interface operations {
     get_evidence: {
         parameters: {
             query: {
+                /** @description name of the node */
                 node: string;
+                /** @description of which moment, Unix seconds; the newest, without it */
                 t?: number | null;
             };
             header?: never;
             path: {
+                /** @description its id, as `GET /api/v1/incidents` lists it */
                 incident: string;
             };
             cookie?: never;
@@ -2030,10 +2003,12 @@ export interface operations {
     get_advice: {
         parameters: {
             query: {
+                /** @description name of the node */
                 node: string;
             };
             header?: never;
             path: {
+                /** @description its id, as `GET /api/v1/incidents` lists it */
                 incident: string;
             };
             cookie?: never;
@@ -2161,6 +2136,15 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The content type or encoding is not taken here */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
             /** @description A field or parameter is not valid */
             422: {
                 headers: {
@@ -2253,6 +2237,7 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
+                /** @description its id, as `GET /api/v1/incidents` lists it */
                 incident: string;
             };
             cookie?: never;
