@@ -12,8 +12,8 @@ from pydantic import BaseModel, Field
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from backend.errors import NotAuthenticated, Problem
-from backend.problems import deny
+from backend.errors import NotAuthenticated
+from backend.problems import answer, deny
 
 COOKIE = "firethread"
 SOCKET_TOKEN = "token"  # noqa: S105 - the parameter's name, not a secret
@@ -86,7 +86,7 @@ class Authentication:
         if scope["type"] == "websocket":
             await deny(WebSocket(scope, receive, send), problem)
             return
-        await send_problem(problem, send)
+        await answer(problem)(scope, receive, send)
 
     def _carries_token(self, scope: Scope) -> bool:
         """Whether header, cookie or (for sockets of programs) query names the token."""
@@ -105,13 +105,6 @@ class Authentication:
             given = parse_qs(scope["query_string"].decode("latin-1")).get(SOCKET_TOKEN, [""])[0]
             return hmac.compare_digest(given.encode(), self.token)
         return False
-
-
-async def send_problem(problem: Problem, send: Send) -> None:
-    """Answer a plain ASGI request with a problem."""
-    headers = [(name.encode(), value.encode()) for name, value in problem.headers().items()]
-    await send({"type": "http.response.start", "status": problem.status, "headers": headers})
-    await send({"type": "http.response.body", "body": problem.body()})
 
 
 class SignIn(BaseModel):

@@ -3,8 +3,9 @@
 from starlette.routing import BaseRoute, Match
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from backend.authentication import SESSION_PATH, send_problem
+from backend.authentication import SESSION_PATH
 from backend.errors import TooLarge
+from backend.problems import answer
 
 SESSION_BYTES = 64 * 1024
 """Whoever signs in has shown no token yet."""
@@ -33,7 +34,7 @@ class BodyLimit:
         try:
             body = await _whole(scope, receive, limit)
         except TooLarge as problem:
-            await send_problem(problem, send)
+            await answer(problem)(scope, receive, send)
             return
         if body is None:
             return  # the client hung up, and nobody is there to be answered

@@ -101,15 +101,15 @@ def worker(
     token = os.environ.get(LINK_TOKEN_VARIABLE, "")
     if link is not None and not token:
         refuse(f"--link needs the token that web process and worker share, in {LINK_TOKEN_VARIABLE}")
-    database_url = Settings(data=data, database=database).database_url
+    settings = Settings(data=data, database=database)
     with refusing():
-        understood(database_url)
+        understood(settings.database_url)
         address = None if link is None else host_and_port(link)
     from backend.tracking.worker import run_worker
 
     if supervised:
         end_with_parent()
-    run_worker(database_url, address, token, holder)
+    run_worker(settings.database_url, address, token, holder, settings.shown_hz)
 
 
 @app.command()

@@ -1,6 +1,6 @@
 """Every refusal that Firethread gives, as one tree, and its form on the wire (RFC 9457).
 
-Problem                     anything that is answered as `application/problem+json`
+Problem              500    anything that is answered as `application/problem+json`; itself a defect of ours
 ├── NotUnderstood    400    the body is no JSON, or not what the route takes
 ├── NotAuthenticated 401    no valid access token
 ├── NotFound         404    no such incident, node or page
@@ -10,7 +10,6 @@ Problem                     anything that is answered as `application/problem+js
 ├── WrongMediaType   415    content type or encoding that is not taken
 ├── Invalid          422    a field or parameter outside its bounds
 ├── TooBusy          429    the log cannot keep up; come back after `retry_after_s`
-├── Unexpected       500    a defect of ours; the log tells more
 ├── Unavailable      503    the log cannot be written, or the estimator is away
 └── TooSlow          504    what was waited for did not come in time
 """

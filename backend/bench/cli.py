@@ -84,6 +84,6 @@ def bench_speed(
 
 @bench.command("all")
 def bench_all() -> None:
-    """Every table, one after the other."""
+    """The tables of the service, one after the other: ingest, replay, fanout, latency."""
     for table in (bench_ingest, bench_replay, bench_fanout, bench_latency):
         table()

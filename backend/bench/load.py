@@ -47,12 +47,10 @@ class Result(msgspec.Struct, frozen=True):
     Attributes:
         batches: acknowledged while counting.
         seconds: of counting.
-        load_cpu_s: processor time that posting took, whole process, while counting.
     """
 
     batches: int
     seconds: float
-    load_cpu_s: float
 
 
 class Poster(asyncio.Protocol):
@@ -104,13 +102,12 @@ async def post(task: Task) -> Result:
         request = bytearray(head + body)
         await loop.create_connection(lambda r=request, p=place: Poster(r, p, names), task.host, task.port)  # type: ignore[misc]  # mypy cannot infer a lambda with defaults
     await asyncio.sleep(task.warm_s)
-    batches, start, cpu = Poster.acknowledged, time.perf_counter(), time.process_time()
+    batches, start = Poster.acknowledged, time.perf_counter()
     await asyncio.sleep(task.counted_s)
     batches, seconds = Poster.acknowledged - batches, time.perf_counter() - start
-    cpu = time.process_time() - cpu
     if Poster.faults:
         raise RuntimeError(f"the server answered {Poster.faults[0][:500]!r}")
-    return Result(batches, seconds, cpu)
+    return Result(batches, seconds)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The messages between web process and worker, and the interfaces that carry them."""
+"""The messages between web process and worker, and what the routes see of whatever carries them."""
 
 from collections.abc import Awaitable, Callable
 from typing import Protocol
@@ -85,27 +85,17 @@ ToWorker = Wake | Query
 ToWeb = Answer | Picture | Alive
 
 
-class WorkerSide(Protocol):
-    """What the worker sees of the link."""
-
-    def publish(self, message: Answer | Picture) -> None:
-        """Send if connected; a picture that cannot be sent is superseded by the next."""
-
-    async def receive(self, timeout_s: float) -> list[ToWorker]:
-        """What has come, at once if something has, else after at most `timeout_s`."""
-
-
 class WebSide(Protocol):
     """What the web process sees of the link."""
 
     def wake(self, incident: str, seq: int) -> None:
-        """Tell the worker that the log has grown; harmless if it is away."""
+        """Tell the workers that the log has grown; harmless if none is there."""
 
     async def ask(self, incident: str, a: str, b: str, timeout_s: float) -> Answer:
-        """Ask the worker where `b` is relative to `a`.
+        """Ask the worker that follows an incident where `b` is relative to `a`.
 
         Raises:
-            Unavailable: no worker is connected.
+            Unavailable: no worker is connected that follows it, or it went away.
             TooSlow: it did not answer in time.
         """
 

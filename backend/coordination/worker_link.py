@@ -24,7 +24,7 @@ log = structlog.get_logger(__name__)
 
 
 class WorkerLink:
-    """Connects to the web process; see `backend.coordination.base.WorkerSide`.
+    """Connects to the web process, again and again, and carries messages both ways.
 
     Args:
         address: host and port of the web process's link; None: there is none.

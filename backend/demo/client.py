@@ -56,8 +56,7 @@ class Client:
     async def active_incidents(self) -> list[dict[str, Any]]:
         """The incidents that are not closed."""
         answer = await self.ask("GET", "/api/v1/incidents?state=active")
-        found = answer.json()
-        return list(found if isinstance(found, list) else found["incidents"])
+        return list(answer.json())
 
     async def create_incident(self, incident: dict[str, Any]) -> str:
         """Begin an incident; its id."""

@@ -11,7 +11,6 @@ from collections.abc import Callable
 import msgspec
 import structlog
 from starlette.datastructures import URLPath
-from starlette.responses import Response
 from starlette.routing import BaseRoute, Match, NoMatchFound
 from starlette.types import Receive, Scope, Send
 
@@ -22,6 +21,7 @@ from backend.log.base import LogWriter, NewBatch
 from backend.log.decode import judge
 from backend.log.incident import Clock
 from backend.log.incidents import IncidentStore
+from backend.problems import answer
 
 PREFIX = "/api/v1/incidents/"
 SUFFIX = "/telemetry"
@@ -168,7 +168,7 @@ def _batch(incident: str, clock: Clock, body: bytes, max_readings: int) -> NewBa
 
 async def _refuse(problem: Problem, scope: Scope, receive: Receive, send: Send) -> None:
     tally.refused(problem.status)
-    headers = problem.headers()
+    response = answer(problem)
     if isinstance(problem, NotAllowed):
-        headers["allow"] = "POST"
-    await Response(problem.body(), problem.status, headers)(scope, receive, send)
+        response.headers["allow"] = "POST"
+    await response(scope, receive, send)

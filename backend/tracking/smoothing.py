@@ -1,4 +1,4 @@
-"""Sums that are too heavy for the web process, in a process of their own: smoothed tracks, stored states."""
+"""Sums over whole logs, too heavy for the web process: a process beside it does them, see `aside.py`."""
 
 import asyncio
 import multiprocessing
@@ -94,7 +94,9 @@ class Kept(Generic[T]):
 
 
 class Smoothing:
-    """Smooths whole incidents, one at a time; asking twice for the same one costs once.
+    """Smooths whole incidents, and tells what a smoothed one says: evidence, advice, relative positions.
+
+    One sum at a time; asking twice for the same one costs once.
 
     Args:
         database_url: SQLAlchemy URL of the log.

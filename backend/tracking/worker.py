@@ -36,7 +36,7 @@ log = structlog.get_logger(__name__)
 
 
 def run_worker(
-    database_url: str, link_address: tuple[str, int] | None, token: str, holder: str, shown_hz: float = 10.0
+    database_url: str, link_address: tuple[str, int] | None, token: str, holder: str, shown_hz: float
 ) -> None:
     """Follow all incidents until told to stop by SIGTERM or SIGINT.
 
