@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Field
 
 from backend.log.incident import (
     AgeS,
+    AirBar,
     Clock,
     IncidentSettings,
     LagS,
@@ -73,6 +74,7 @@ class SettingsChange(Value):
     static_lost_after_s: AgeS = Field(default_factory=float)
     lag_s: LagS = Field(default_factory=float)
     tracker: TrackerName = Field(default_factory=lambda: "kirchhoff")
+    low_air_bar: AirBar = Field(default_factory=float)
 
 
 class IncidentChange(Value):

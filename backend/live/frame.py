@@ -10,6 +10,7 @@ from estimator.measurements.node import Role
 from estimator.measurements.status import AlarmKind, AlarmState
 
 Status = Literal["live", "stale", "lost", "retired"]
+AirState = Literal["turn_back", "low"]
 
 
 class FrameNode(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -40,6 +41,9 @@ class FrameNode(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         air_t: the same of `air_bar`.
         temperature_t: the same of `temperature_c`.
         motionless_t: the same of `motionless_s`.
+        air_state: half of the air above the low pressure is used, or the pressure is low; left out before,
+            and of who has left.
+        air_turn_back_bar: the pressure at which half of it is used (bar); left out where no air was reported.
     """
 
     node: str
@@ -65,6 +69,8 @@ class FrameNode(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     air_t: float | None = None
     temperature_t: float | None = None
     motionless_t: float | None = None
+    air_state: AirState | None = None
+    air_turn_back_bar: float | None = None
 
 
 class FrameAlarm(msgspec.Struct, frozen=True, kw_only=True):
@@ -101,6 +107,28 @@ class FrameNotice(msgspec.Struct, frozen=True, kw_only=True):
     node: str | None
 
 
+class FrameAside(msgspec.Struct, frozen=True, kw_only=True):
+    """Who is heard, and not live on the map, because none of its readings can be used.
+
+    Attributes:
+        name: as which it speaks, which may be no identifier; empty where it does not say.
+        callsign: as it calls itself by radio.
+        crew: as it says.
+        gateway: by which it was heard.
+        t: when it was heard last, by the incident's clock, Unix seconds.
+        code: what is wrong with its readings, for programs.
+        text: the same, for people.
+    """
+
+    name: str
+    callsign: str | None
+    crew: str | None
+    gateway: str
+    t: float
+    code: str
+    text: str
+
+
 class Frame(msgspec.Struct, frozen=True, kw_only=True):
     """The picture of an incident at one moment.
 
@@ -112,7 +140,8 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True):
         newest_t: the newest epoch folded, Unix seconds; null before the first reading.
         nodes: all nodes ever introduced.
         alarms: alarms that stand.
-        notices: the newest notices of the estimator.
+        notices: the newest notices of the estimator, and why somebody who has no position comes too late.
+        set_aside: who is heard, and not live on the map, because none of its readings can be used.
     """
 
     incident: str
@@ -123,6 +152,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True):
     nodes: tuple[FrameNode, ...]
     alarms: tuple[FrameAlarm, ...]
     notices: tuple[FrameNotice, ...]
+    set_aside: tuple[FrameAside, ...]
 
 
 class FrameMessage(Frame, frozen=True, kw_only=True, tag_field="type", tag="frame"):
@@ -216,6 +246,7 @@ def message(
         nodes=cast("tuple[FrameNode, ...]", nodes),
         alarms=frame.alarms,
         notices=frame.notices,
+        set_aside=frame.set_aside,
     )
 
 

@@ -4,10 +4,10 @@ Nothing here depends on the estimator being alive: the web process presents the 
 second, so that a fix ages on the screen whatever has happened to the process that made it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
-from backend.live.frame import Frame, FrameAlarm, FrameNode, FrameNotice, Status
-from backend.live.record import PictureRecord, RecordNode
+from backend.live.frame import AirState, Frame, FrameAlarm, FrameAside, FrameNode, FrameNotice, Status
+from backend.live.record import PictureRecord, RecordNode, RecordNotice
 from backend.log.incident import Incident, IncidentSettings
 from estimator.estimate import Covariance6
 from estimator.levels import most_probable
@@ -79,6 +79,29 @@ def covariance_at(known: RecordNode, t: float) -> Covariance6 | None:
     return grown(known.covariance_m2, known.role, t - known.t)
 
 
+def turn_back_bar(known: RecordNode, settings: IncidentSettings) -> float | None:
+    """The pressure at which half of the air above the low pressure is used (bar); None: none was reported.
+
+    As much is left for the way out as the way in has taken, before the low-air alarm.
+    """
+    if known.air_first_bar is None:
+        return None
+    return max(settings.low_air_bar, (known.air_first_bar + settings.low_air_bar) / 2.0)
+
+
+def air_state(known: RecordNode, settings: IncidentSettings) -> AirState | None:
+    """Whether a responder's air is low, or so far used that it is time to turn back.
+
+    The lowest report of the cylinder counts, so that none that wavers comes and goes (decision 0063).
+    """
+    least_bar, back_bar = known.air_least_bar, turn_back_bar(known, settings)
+    if least_bar is None or back_bar is None or known.retired:
+        return None
+    if least_bar <= settings.low_air_bar:
+        return "low"
+    return "turn_back" if least_bar <= back_bar else None
+
+
 def floors_of(incident: Incident) -> Floors:
     """The storeys of an incident."""
     return [(level.level, level.name, level.up_m) for level in incident.levels]
@@ -114,6 +137,8 @@ def present_node(known: RecordNode, now: float, settings: IncidentSettings, floo
         air_t=known.air_t,
         temperature_t=known.temperature_t,
         motionless_t=known.motionless_t,
+        air_state=air_state(known, settings),
+        air_turn_back_bar=turn_back_bar(known, settings),
     )
 
 
@@ -142,9 +167,43 @@ def present(record: PictureRecord, seq: int, now: float, incident: Incident) -> 
         ),
         notices=tuple(
             FrameNotice(code=notice.code, t=notice.t, text=notice.text, node=notice.node)
-            for notice in record.notices[-NOTICES_SHOWN:]
+            for notice in _notices_shown(record)
         ),
+        set_aside=tuple(_set_aside_at(record, now, incident.settings)),
     )
+
+
+def _notices_shown(record: PictureRecord) -> list[RecordNotice]:
+    """The newest notices, and however old the one that says why somebody has no position."""
+    placed = {known.node for known in record.nodes if known.position_m is not None}
+    first = len(record.notices) - NOTICES_SHOWN
+    return [
+        notice
+        for at, notice in enumerate(record.notices)
+        if at >= first or (notice.code == "too_late" and notice.node not in placed)
+    ]
+
+
+def _set_aside_at(record: PictureRecord, now: float, settings: IncidentSettings) -> Iterator[FrameAside]:
+    """Whose readings have been set aside by a moment, but for those who are live on the map all the same."""
+    nodes = {known.node: known for known in record.nodes}
+    for aside in record.set_aside:
+        if aside.since_t > now:
+            continue
+        known = nodes.get(aside.name)
+        if known is not None:
+            status = status_of(known.role, now - known.t, settings, retired=known.retired)
+            if status == "retired" or (status == "live" and known.position_m is not None):
+                continue
+        yield FrameAside(
+            name=aside.name,
+            callsign=aside.callsign or (None if known is None else known.callsign),
+            crew=aside.crew or (None if known is None else known.crew),
+            gateway=aside.gateway,
+            t=min(aside.t, now),
+            code=aside.code,
+            text=aside.text,
+        )
 
 
 def now_of(incident: Incident, record: PictureRecord, server_t: float) -> float:

@@ -41,6 +41,8 @@ class RecordNode(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
         air_t: the same of `air_bar`.
         temperature_t: the same of `temperature_c`.
         motionless_t: the same of `motionless_s`.
+        air_first_bar: the highest pressure that the cylinder in use was reported with (bar).
+        air_least_bar: the lowest one (bar).
     """
 
     node: str
@@ -64,6 +66,8 @@ class RecordNode(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     air_t: float | None = None
     temperature_t: float | None = None
     motionless_t: float | None = None
+    air_first_bar: float | None = None
+    air_least_bar: float | None = None
 
 
 class RecordAlarm(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
@@ -100,6 +104,30 @@ class RecordNotice(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     node: str | None = None
 
 
+class RecordAside(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
+    """Who was heard without a reading that can be used since.
+
+    Attributes:
+        name: as which it speaks; empty where it does not say.
+        gateway: by which it was heard.
+        since_t: when the first such reading came, by the incident's clock, Unix seconds.
+        t: when the newest one came.
+        code: what was wrong with that, for programs.
+        text: the same for people.
+        callsign: as it calls itself by radio.
+        crew: as it says.
+    """
+
+    name: str
+    gateway: str
+    since_t: float
+    t: float
+    code: str
+    text: str
+    callsign: str | None = None
+    crew: str | None = None
+
+
 class PictureRecord(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     """What is known of an incident after a log entry, apart from the moment at which it is looked at.
 
@@ -108,12 +136,14 @@ class PictureRecord(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
         nodes: all nodes ever introduced, in order of introduction.
         alarms: alarms that stand, oldest first.
         notices: the newest notices, oldest first.
+        set_aside: whose readings were set aside, all of them, the longest silent first.
     """
 
     t: float | None = None
     nodes: tuple[RecordNode, ...] = ()
     alarms: tuple[RecordAlarm, ...] = ()
     notices: tuple[RecordNotice, ...] = ()
+    set_aside: tuple[RecordAside, ...] = ()
 
 
 EMPTY = PictureRecord()

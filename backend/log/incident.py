@@ -15,6 +15,7 @@ Name = Annotated[str, Field(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f
 LevelName = Annotated[str, Field(min_length=1, max_length=40, pattern=r"^[^\x00-\x1f\x7f]+$")]
 LagS = Annotated[float, Field(ge=0.0, le=600.0)]
 AgeS = Annotated[float, Field(gt=0.0, le=86_400.0)]
+AirBar = Annotated[float, Field(ge=0.0, le=1_000.0)]
 
 
 class Value(BaseModel):
@@ -48,6 +49,9 @@ class IncidentSettings(Value):
     static_lost_after_s: AgeS = Field(default=300.0, description="a static node is lost after this age (s)")
     lag_s: LagS = Field(default=60.0, description="readings later than this are logged, not fused (s)")
     tracker: TrackerName = Field(default="kirchhoff", description="the estimator")
+
+    # EN 137: the whistle of a breathing apparatus sounds at (55 ± 5) bar.
+    low_air_bar: AirBar = Field(default=60.0, description="a responder's air is low from here on down (bar)")
 
     @model_validator(mode="after")
     def _lost_comes_after_stale(self) -> Self:

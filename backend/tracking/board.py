@@ -1,18 +1,23 @@
 """What is shown but not fused: names, crews, vitals, alarms, notices. A pure fold over readings."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import msgspec
 
-from backend.live.record import PictureRecord, RecordAlarm, RecordNode, RecordNotice
+from backend.live.record import PictureRecord, RecordAlarm, RecordAside, RecordNode, RecordNotice
+from backend.log.base import LoggedBatch
 from backend.tracking.alarms import AlarmEntry
+from backend.tracking.set_aside import after_batch
 from estimator.estimate import NodeEstimate, Notice
 from estimator.fusion.tick import names_of
 from estimator.measurements import Alarm, AnyReading, Node, Retire, Status
 from estimator.measurements.status import AlarmKind
 
 NOTICES_KEPT = 32
+
+ANOTHER_CYLINDER_BAR = 20.0
+"""Pressure that rises by more is that of another cylinder: warming and noise make a few bar."""
 
 
 class NodeBoard(msgspec.Struct):
@@ -28,6 +33,8 @@ class NodeBoard(msgspec.Struct):
         motionless_s: for how long it has not moved (s).
         status_t: epoch of the newest status, Unix seconds.
         told_t: epoch of the newest status that told each of the four, at most when that came, Unix seconds.
+        air_first_bar: the highest pressure that the cylinder in use was reported with (bar).
+        air_least_bar: the lowest one (bar).
         moved_t: when it was last noticed to have been moved, Unix seconds.
     """
 
@@ -41,6 +48,15 @@ class NodeBoard(msgspec.Struct):
     status_t: float | None = None
     moved_t: float | None = None
     told_t: dict[str, float] = msgspec.field(default_factory=dict)
+    air_first_bar: float | None = None
+    air_least_bar: float | None = None
+
+    def breathes(self, air_bar: float) -> None:
+        """Note a reported pressure (bar), which belongs to the cylinder in use or begins another."""
+        first, least = self.air_first_bar, self.air_least_bar
+        begins = self.air_bar is None or air_bar > self.air_bar + ANOTHER_CYLINDER_BAR
+        self.air_first_bar = air_bar if begins or first is None else max(air_bar, first)
+        self.air_least_bar = air_bar if begins or least is None else min(air_bar, least)
 
 
 class Board(msgspec.Struct):
@@ -52,6 +68,7 @@ class Board(msgspec.Struct):
         notices: the newest notice of each code and node, oldest first.
         came_t: when those were heard of last of whom readings told before their time, Unix seconds.
         retired: when each node was last retired, Unix seconds, and why, where that was said.
+        aside: who was heard without a reading that can be used since, by name.
     """
 
     nodes: dict[str, NodeBoard] = msgspec.field(default_factory=dict)
@@ -59,6 +76,7 @@ class Board(msgspec.Struct):
     notices: list[RecordNotice] = msgspec.field(default_factory=list)
     came_t: dict[str, float] = msgspec.field(default_factory=dict)
     retired: dict[str, tuple[float, str | None]] = msgspec.field(default_factory=dict)
+    aside: dict[str, RecordAside] = msgspec.field(default_factory=dict)
 
     def fold(self, readings: Iterable[AnyReading], known_t: float = math.inf) -> None:
         """Take readings in, in their order.
@@ -70,6 +88,9 @@ class Board(msgspec.Struct):
         for reading in readings:
             if reading.until_t > known_t or self.came_t:
                 self._came(reading, known_t)
+            if self.aside:
+                for name in names_of(reading):
+                    self.aside.pop(name, None)
             match reading:
                 case Status():
                     self._told(reading, known_t)
@@ -79,6 +100,17 @@ class Board(msgspec.Struct):
                     self._named(reading)
                 case Retire():
                     self._retired(reading)
+
+    def set_aside(self, batch: LoggedBatch, came_t: float, readings: Sequence[AnyReading]) -> None:
+        """Note whose readings a batch holds that were set aside.
+
+        Args:
+            batch: it is.
+            came_t: when it came, by the incident's clock, Unix seconds.
+            readings: those of its readings that can be used.
+        """
+        usable = {name for reading in readings for name in names_of(reading)}
+        self.aside = after_batch(self.aside, batch, came_t, usable)
 
     def _came(self, reading: AnyReading, known_t: float) -> None:
         """Note when a node whose clock is ahead was heard of."""
@@ -124,6 +156,8 @@ class Board(msgspec.Struct):
         for name in ("battery", "air_bar", "temperature_c", "motionless_s"):
             value = getattr(reading, name)
             if value is not None:
+                if name == "air_bar":
+                    known.breathes(value)
                 setattr(known, name, value)
                 known.told_t[name] = min(reading.t, known_t)
 
@@ -152,7 +186,11 @@ class Board(msgspec.Struct):
         ]
         standing.sort(key=lambda alarm: (alarm.t, alarm.node, alarm.alarm))
         return PictureRecord(
-            t=newest_t, nodes=tuple(nodes), alarms=tuple(standing), notices=tuple(self.notices)
+            t=newest_t,
+            nodes=tuple(nodes),
+            alarms=tuple(standing),
+            notices=tuple(self.notices),
+            set_aside=tuple(self.aside.values()),
         )
 
     def _joined(self, estimate: NodeEstimate) -> RecordNode:
@@ -184,4 +222,6 @@ def _record_of(estimate: NodeEstimate, told: NodeBoard, t: float, retire_reason:
         air_t=told.told_t.get("air_bar"),
         temperature_t=told.told_t.get("temperature_c"),
         motionless_t=told.told_t.get("motionless_s"),
+        air_first_bar=told.air_first_bar,
+        air_least_bar=told.air_least_bar,
     )

@@ -72,6 +72,10 @@ def _alarms_heard(readings: Sequence[AnyReading], came_t: float | None) -> Seque
     ]
 
 
+def _first_known(*times: float | None) -> float:
+    return next((t for t in times if t is not None), 0.0)
+
+
 class IncidentFold:
     """Folds the log of one incident, entry by entry; the same log gives the same rows, bit for bit.
 
@@ -137,6 +141,10 @@ class IncidentFold:
             self._picture = None
             self.seq, self.received = batch.seq, batch.received
             yield row
+        if batch.rejected:
+            came_t = batch.received if self._live else _first_known(self.newest_t, batch.sent, batch.received)
+            self._board.set_aside(batch, came_t, readings)
+            self._picture = None
         self.seq = batch.seq
         self.whole = True
 

@@ -16,6 +16,7 @@ from tests.end_to_end.letting_in import SignInSeen
 from tests.end_to_end.noting import BoardNoted
 from tests.end_to_end.others import OthersSeen
 from tests.end_to_end.past import PastCompared
+from tests.end_to_end.warned import WarningsSeen
 from tests.running import eventually
 
 
@@ -30,7 +31,9 @@ class BoardRow:
     air: str
 
 
-class Commander(MapSeen, LayoutSeen, OthersSeen, PastCompared, SignInSeen, DeviceUsed, BoardNoted):
+class Commander(
+    MapSeen, LayoutSeen, OthersSeen, PastCompared, SignInSeen, DeviceUsed, BoardNoted, WarningsSeen
+):
     """What a commander sees and does.
 
     Args:
@@ -224,7 +227,8 @@ class Commander(MapSeen, LayoutSeen, OthersSeen, PastCompared, SignInSeen, Devic
     def event_marks(self) -> list[str]:
         """The words of the marks on the timeline, in their order."""
         marks: list[str] = self.page.get_by_test_id("timeline").evaluate(
-            "(bar) => [...bar.querySelectorAll('.marks i')].map((mark) => mark.title.replace(/^\\S+ /, ''))"
+            """(bar) => [...bar.querySelectorAll('i:not(.midnight)')].map(
+                 ({title}) => title.replace(/^\\S+ /, ''))"""
         )
         return marks
 
@@ -241,12 +245,6 @@ class Commander(MapSeen, LayoutSeen, OthersSeen, PastCompared, SignInSeen, Devic
 
     def _event_button(self, name: str) -> Locator:
         return self.page.get_by_test_id("timeline").get_by_role("button", name=name)
-
-    @property
-    def trouble(self) -> str:
-        """What the top bar says went wrong; nothing if nothing did."""
-        said = self.page.locator("header [role=status]")
-        return said.inner_text() if said.count() else ""
 
     def goes_back_to_live(self) -> None:
         """Press the button back to live."""

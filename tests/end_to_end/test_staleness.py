@@ -51,10 +51,10 @@ def test_air_that_was_told_long_ago_is_said_to_be_of_then_though_its_bearer_is_l
     eventually(lambda: commander.board()["WALKER"].air == "air 180 bar")
     heard(post, incident, step(T0 + 300, "walker", [1, 0, 0]))
     eventually(lambda: commander.board()["WALKER"].air == "air was 180 bar 5 min ago")
-    assert commander.board()["WALKER"].status == "Live"
+    assert commander.board()["WALKER"].status == "Was live"
     assert commander.cut_off() == []
     heard(post, incident, told | {"t": T0 + 301, "air_bar": 90})
-    eventually(lambda: commander.board()["WALKER"].air == "air 90 bar")
+    eventually(lambda: commander.board()["WALKER"].air == "90 bar, turn back")
 
 
 def test_who_is_lost_because_the_clock_of_the_unit_is_wrong_has_that_on_the_card(

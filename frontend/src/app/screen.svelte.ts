@@ -1,4 +1,6 @@
 /** What the whole screen knows: the incident, its pictures now and then, and what is chosen. */
+
+import { lowOnAir } from "../domain/air";
 import { alarmByNode, inOrder, type StandingAlarms, standingAlarms } from "../domain/alarms";
 import { incidentTime } from "../domain/clock";
 import { crewMarks } from "../domain/crews";
@@ -121,6 +123,14 @@ export class Screen implements DoorOwner, ReplayOwner {
   );
   readonly crews = $derived(crewMarks([...(this.picture?.nodes.values() ?? [])].map(({ state }) => state)));
   readonly alarmList = $derived(inOrder(this.standing));
+  /** Whose air is low, as it is known now. */
+  readonly lowAir = $derived(
+    lowOnAir(
+      this.livePicture,
+      this.liveNow,
+      this.liveIsHeard ? limitsOf(this.incident) : whileUnheard(limitsOf(this.incident)),
+    ),
+  );
   /** Who is in alarm in what is shown. */
   readonly alarms = $derived(
     alarmByNode(

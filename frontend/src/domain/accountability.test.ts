@@ -59,6 +59,25 @@ test("air that was told long ago is of then, though its bearer is live, and told
   expect(airOf()).toMatchObject({ air: "180 bar", airOld: false });
 });
 
+test("beside the pressure it is said that it is time to turn back, and that it is low; of who has left nothing", () => {
+  const rowOf = (over: Parameters<typeof aNode>[0]) =>
+    board(pictureWith(aNode(over)), NOON, STOREYS, DEFAULT_LIMITS, new Map())[0]?.rows[0];
+  expect(rowOf({ air_bar: 250 })).toMatchObject({ airState: null, airLow: false });
+  expect(rowOf({ air_bar: 170, air_state: "turn_back" })).toMatchObject({
+    airState: "turn back",
+    airLow: false,
+  });
+  expect(rowOf({ air_bar: 50, air_state: "low" })).toMatchObject({ airState: "LOW AIR", airLow: true });
+  expect(rowOf({ air_state: "low", status: "retired" })).toMatchObject({ airState: null, airLow: false });
+});
+
+test("of the past it is said who was live", () => {
+  const rows = board(picture, NOON, STOREYS, DEFAULT_LIMITS, alarms, true)[0]?.rows;
+  expect(rows?.map(({ statusWord }) => statusWord)).toEqual(["Stale", "Lost", "Not tracked"]);
+  const [row] = board(pictureWith(aNode()), NOON, STOREYS, DEFAULT_LIMITS, alarms, true)[0]?.rows ?? [];
+  expect(row).toMatchObject({ status: "live", statusWord: "Was live" });
+});
+
 test("rows age by themselves, without another word from the server", () => {
   const later = board(picture, NOON + 70, STOREYS, DEFAULT_LIMITS, alarms);
   expect(later[1]?.rows[1]).toMatchObject({ status: "lost", age_s: 70 });
@@ -105,7 +124,9 @@ test("whoever has no position yet is named, as the map cannot show him; who has 
     aNode({ node: "ff3", callsign: "E7-3", status: "retired", ...nowhere }),
     aNode({ node: "u1", role: "uav", ...nowhere }),
   );
-  expect(withoutFix(board(some, NOON, STOREYS, DEFAULT_LIMITS, new Map()))).toEqual(["E7-2"]);
+  const crews = board(some, NOON, STOREYS, DEFAULT_LIMITS, new Map());
+  expect(withoutFix(crews, new Map())).toEqual(["E7-2"]);
+  expect(withoutFix(crews, new Map([["ff2", "clock 10 min ahead"]]))).toEqual([]);
 });
 
 test("crews stand in the order of their numbers", () => {

@@ -1,5 +1,6 @@
 /** The accountability board: every responder by crew, in the order that does not jump about. */
 
+import { airStateWords, isLowOnAir } from "./air";
 import { ce95 } from "./ellipse";
 import { storeyUnsure, storeyWords } from "./levels";
 import type { Picture } from "./picture";
@@ -19,6 +20,9 @@ export interface BoardRow {
   readonly air: string;
   /** The report of it is too old to be taken for what is so now. */
   readonly airOld: boolean;
+  /** What is said beside it: that it is low, or time to turn back. */
+  readonly airState: string | null;
+  readonly airLow: boolean;
   readonly alarm: string | null;
   readonly state: FrameNode;
 }
@@ -39,14 +43,14 @@ export interface BoardCounts {
 const NO_CREW = "No crew";
 const UAVS = "UAV";
 
-/** Rows by crew: named crews in order of name, then those without one, then aircraft; of an incident that is over or not. */
+/** Rows by crew: named crews in order of name, then those without one, then aircraft; of the past, or at the end, or now. */
 export function board(
   picture: Picture | null,
   now: number,
   levels: readonly Level[],
   limits: StalenessLimits,
   alarms: ReadonlyMap<string, FrameAlarm>,
-  over = false,
+  ofThen = false,
 ): BoardCrew[] {
   const crews = new Map<string, BoardRow[]>();
   for (const sighting of picture?.nodes.values() ?? []) {
@@ -60,13 +64,15 @@ export function board(
       node: state.node,
       name: nameOf(state),
       status,
-      statusWord: statusWord(status, over),
+      statusWord: statusWord(status, ofThen),
       level: storeyWords(state, levels),
       levelUnsure: storeyUnsure(state),
       age_s: ageS(state, now),
       error_m: covariance && ce95(covariance),
       air: airWords(state.air_bar, airTold),
       airOld: isOld(airTold),
+      airState: status === "retired" ? null : airStateWords(state.air_state),
+      airLow: isLowOnAir(state),
       alarm: alarm ? alarmWord(alarm.alarm) : null,
       state,
     };
@@ -97,11 +103,13 @@ export function boardCounts(crews: readonly BoardCrew[]): BoardCounts {
   return counts;
 }
 
-/** The names of the responders who are nowhere on the map: their position is not decided yet. */
-export function withoutFix(crews: readonly BoardCrew[]): string[] {
+/** The names of the responders who are nowhere on the map, but for those of whom it is known why. */
+export function withoutFix(crews: readonly BoardCrew[], why: ReadonlyMap<string, string>): string[] {
   return crews
     .flatMap(({ rows }) => rows)
-    .filter(({ state, status }) => state.role === "responder" && status !== "retired" && !state.position_m)
+    .filter(({ node, state, status }) => {
+      return state.role === "responder" && status !== "retired" && !state.position_m && !why.has(node);
+    })
     .map(({ name }) => name);
 }
 

@@ -17,6 +17,10 @@ test("one is one, and no alarm is said", () => {
   );
 });
 
+test("whose air is low is counted where there is anybody", () => {
+  expect(mapInWords(counts, 0, 0, "all", STOREYS, "live", 2)).toContain("no alarm, 2 low on air");
+});
+
 test("of an incident that is over it says who was live", () => {
   expect(mapInWords(counts, 0, 0, "all", STOREYS, "closed")).toContain("6 responders, 4 were live, 1 stale");
 });

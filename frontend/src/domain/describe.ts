@@ -12,6 +12,7 @@ export function mapInWords(
   choice: LevelChoice,
   levels: readonly Level[],
   presence: Presence,
+  lowOnAir = 0,
 ): string {
   const where = choice === "all" ? "all storeys" : levelWords(choice, levels);
   return [
@@ -19,5 +20,6 @@ export function mapInWords(
     `${liveWords(counts.live, presence)}, ${counts.stale} stale, ${counts.lost} lost`,
     plural(breadcrumbs, "breadcrumb"),
     alarms === 0 ? "no alarm" : plural(alarms, "alarm"),
+    ...(lowOnAir === 0 ? [] : [`${lowOnAir} low on air`]),
   ].join(", ");
 }

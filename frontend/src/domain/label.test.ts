@@ -44,6 +44,15 @@ test("who is in alarm on another storey than the one shown is labelled with his 
   expect(labelWords(upstairs, { ...ALL, level: 0, alarms }).whole).toEqual(["E7-1 MAYDAY", "3 s · Level 1"]);
 });
 
+test("whose air is low is labelled with it, beside a call for help as well", () => {
+  const low = aNode({ air_state: "low", air_bar: 48 });
+  expect(labelWords(low, ALL).whole[0]).toBe("E7-1 LOW AIR");
+  expect(labelWords(low, ALL).short).toBe("E7-1 LOW AIR · 3 s");
+  expect(labelWords(low, { ...ALL, alarms: new Map([["ff1", anAlarm()]]) }).whole[0]).toBe(
+    "E7-1 MAYDAY LOW AIR",
+  );
+});
+
 test("what flies is on no storey", () => {
   expect(labelWords(aNode({ role: "uav", level: 1 }), ALL).whole[1]).toBe("3 s");
 });

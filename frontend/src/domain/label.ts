@@ -1,4 +1,5 @@
 /** What stands beside a responder on the map: who, in which alarm, how old the fix, where it is not plain. */
+import { isLowOnAir } from "./air";
 import { type LevelChoice, levelOf, storeyUnsure, storeyWords } from "./levels";
 import { ageS, type StalenessLimits, statusAt } from "./staleness";
 import type { FrameAlarm, FrameNode, Level } from "./types";
@@ -31,7 +32,8 @@ export function labelWords(
   const alarm = alarms.get(node.node);
   const age = shortAge(ageS(node, now));
   const callsign = nameInText(nameOf(node));
-  const name = alarm ? `${callsign} ${alarmWord(alarm.alarm)}` : callsign;
+  const called = alarm ? `${callsign} ${alarmWord(alarm.alarm)}` : callsign;
+  const name = isLowOnAir(node) ? `${called} LOW AIR` : called;
   const old = status === "live" ? age : `${statusWord(status).toUpperCase()} ${age}`;
   const said = saysStorey(node, level, levels);
   const storey = ` · ${storeyWords(node, levels)}`;

@@ -17,6 +17,8 @@ export interface Picture {
   readonly alarms: readonly FrameAlarm[];
   /** What the estimator has noticed, or could not take in. */
   readonly notices: FrameMessage["notices"];
+  /** Who is heard, and not live on the map, because nothing of it can be used. */
+  readonly setAside: FrameMessage["set_aside"];
   /** The incident's estimator could not go on: nothing that is reported since is in the picture, no alarm either. */
   readonly standsStill: boolean;
   /** What was last reported is not in the picture yet, and has not been for seconds: an alarm may be missing. */
@@ -43,6 +45,7 @@ export function pictureOf(frame: FrameMessage): Picture {
     nodes,
     alarms: frame.alarms,
     notices: frame.notices,
+    setAside: frame.set_aside,
     standsStill: standsStill(frame),
     behind: isBehind(frame),
   };
@@ -60,6 +63,7 @@ export function withDelta(picture: Picture, delta: DeltaMessage): Picture {
     nodes,
     alarms: delta.alarms,
     notices: delta.notices,
+    setAside: delta.set_aside,
     standsStill: standsStill(delta),
     behind: isBehind(delta),
   };

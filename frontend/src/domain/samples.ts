@@ -48,12 +48,32 @@ export const A_DELAY = { code: "estimator_behind", t: NOON, text: "It is behind.
 
 export function aFrame(nodes: FrameNode[], over: Partial<FrameMessage> = {}): FrameMessage {
   const times = { t: NOON, clock_t: NOON, newest_t: NOON };
-  return { type: "frame", incident: "i1", seq: 1, ...times, nodes, alarms: [], notices: [], ...over };
+  return {
+    type: "frame",
+    incident: "i1",
+    seq: 1,
+    ...times,
+    nodes,
+    alarms: [],
+    notices: [],
+    set_aside: [],
+    ...over,
+  };
 }
 
 export function aDelta(nodes: FrameNode[], over: Partial<DeltaMessage> = {}): DeltaMessage {
   const times = { t: NOON + 1, clock_t: NOON + 1, newest_t: NOON + 1 };
-  return { type: "delta", incident: "i1", seq: 2, ...times, nodes, alarms: [], notices: [], ...over };
+  return {
+    type: "delta",
+    incident: "i1",
+    seq: 2,
+    ...times,
+    nodes,
+    alarms: [],
+    notices: [],
+    set_aside: [],
+    ...over,
+  };
 }
 
 export function pictureWith(...nodes: FrameNode[]): Picture {

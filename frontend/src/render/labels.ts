@@ -1,4 +1,5 @@
 /** Who it is and how old the fix is, of each responder. */
+import { isLowOnAir } from "../domain/air";
 import { labelWords } from "../domain/label";
 import { isNarrow } from "../domain/view";
 import { labelPlaces, nearest, type Spot, type Wanted } from "./label-places";
@@ -111,19 +112,19 @@ function write(
   lines: readonly string[],
   box: Box,
 ): void {
+  const { palette } = scene;
   const alarm = scene.alarms.has(node.node);
-  context.globalAlpha = alarm ? 1 : 0.82;
-  context.fillStyle = alarm ? scene.palette.alarm : scene.palette.panel;
+  const low = isLowOnAir(node);
+  context.globalAlpha = alarm || low ? 1 : 0.82;
+  context.fillStyle = alarm ? palette.alarm : low ? palette.warn : palette.panel;
   context.beginPath();
   context.roundRect(box.x, box.y, box.width, box.height, 4);
   context.fill();
   context.globalAlpha = 1;
   lines.forEach((line, index) => {
-    context.fillStyle = alarm
-      ? scene.palette.alarmInk
-      : index === 0
-        ? scene.palette.ink
-        : scene.palette.inkSoft;
+    if (alarm) context.fillStyle = palette.alarmInk;
+    else if (low) context.fillStyle = palette.panel;
+    else context.fillStyle = index === 0 ? palette.ink : palette.inkSoft;
     context.fillText(line, box.x + PADDING, box.y + 3 + index * LINE_PX * scene.view.text);
   });
 }

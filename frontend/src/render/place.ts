@@ -1,4 +1,5 @@
 /** Where nodes are drawn, and which one a finger means. */
+import { isLowOnAir } from "../domain/air";
 import { levelOf } from "../domain/levels";
 import { isMoving, statusAt } from "../domain/staleness";
 import type { FrameNode, Status } from "../domain/types";
@@ -39,10 +40,11 @@ export function placed(scene: Scene): readonly Placed[] {
 
 const WORSE: Record<Status, number> = { retired: 0, live: 0, stale: 1, lost: 2 };
 
-/** How much a responder matters to who looks: those not heard more than those live, alarm and choice most. */
+/** How much a responder matters to who looks: those not heard more than those live, then low air, alarm and choice. */
 export function rankOf(scene: Scene, node: FrameNode): number {
   if (node.node === scene.selected) return 4;
-  return scene.alarms.has(node.node) ? 3 : WORSE[statusAt(node, scene.now, scene.limits)];
+  if (scene.alarms.has(node.node)) return 3;
+  return isLowOnAir(node) ? 2.5 : WORSE[statusAt(node, scene.now, scene.limits)];
 }
 
 /** Responders and UAVs, those that matter most last, so that they lie on top. */

@@ -381,6 +381,12 @@ export interface components {
              * @enum {string}
              */
             tracker?: "kirchhoff" | "paper-a";
+            /**
+             * Low Air Bar
+             * @description a responder's air is low from here on down (bar)
+             * @default 60
+             */
+            low_air_bar?: number;
         };
         /**
          * Level
@@ -477,6 +483,8 @@ export interface components {
              * @enum {string}
              */
             tracker?: "kirchhoff" | "paper-a";
+            /** Low Air Bar */
+            low_air_bar?: number;
         };
         /**
          * SignIn
@@ -891,7 +899,8 @@ export interface components {
          *             newest_t: the newest epoch folded, Unix seconds; null before the first reading.
          *             nodes: all nodes ever introduced.
          *             alarms: alarms that stand.
-         *             notices: the newest notices of the estimator.
+         *             notices: the newest notices of the estimator, and why somebody who has no position comes too late.
+         *             set_aside: who is heard, and not live on the map, because none of its readings can be used.
          */
         Frame: {
             incident: string;
@@ -902,6 +911,7 @@ export interface components {
             nodes: components["schemas"]["FrameNode"][];
             alarms: components["schemas"]["FrameAlarm"][];
             notices: components["schemas"]["FrameNotice"][];
+            set_aside: components["schemas"]["FrameAside"][];
         };
         /**
          * FrameNode
@@ -932,6 +942,9 @@ export interface components {
          *             air_t: the same of `air_bar`.
          *             temperature_t: the same of `temperature_c`.
          *             motionless_t: the same of `motionless_s`.
+         *             air_state: half of the air above the low pressure is used, or the pressure is low; left out before,
+         *                 and of who has left.
+         *             air_turn_back_bar: the pressure at which half of it is used (bar); left out where no air was reported.
          */
         FrameNode: {
             node: string;
@@ -974,6 +987,10 @@ export interface components {
             temperature_t?: number | null;
             /** @default null */
             motionless_t?: number | null;
+            /** @default null */
+            air_state?: ("low" | "turn_back") | null;
+            /** @default null */
+            air_turn_back_bar?: number | null;
         };
         /**
          * FrameAlarm
@@ -1012,6 +1029,28 @@ export interface components {
             node: string | null;
         };
         /**
+         * FrameAside
+         * @description Who is heard, and not live on the map, because none of its readings can be used.
+         *
+         *         Attributes:
+         *             name: as which it speaks, which may be no identifier; empty where it does not say.
+         *             callsign: as it calls itself by radio.
+         *             crew: as it says.
+         *             gateway: by which it was heard.
+         *             t: when it was heard last, by the incident's clock, Unix seconds.
+         *             code: what is wrong with its readings, for programs.
+         *             text: the same, for people.
+         */
+        FrameAside: {
+            name: string;
+            callsign: string | null;
+            crew: string | null;
+            gateway: string;
+            t: number;
+            code: string;
+            text: string;
+        };
+        /**
          * FrameMessage
          * @description A whole frame: the first message, and again where deltas would have been missed.
          */
@@ -1029,6 +1068,7 @@ export interface components {
             nodes: components["schemas"]["FrameNode"][];
             alarms: components["schemas"]["FrameAlarm"][];
             notices: components["schemas"]["FrameNotice"][];
+            set_aside: components["schemas"]["FrameAside"][];
         };
         /**
          * DeltaMessage
@@ -1048,6 +1088,7 @@ export interface components {
             nodes: components["schemas"]["FrameNode"][];
             alarms: components["schemas"]["FrameAlarm"][];
             notices: components["schemas"]["FrameNotice"][];
+            set_aside: components["schemas"]["FrameAside"][];
         };
         /**
          * HeartbeatMessage

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from backend.live.presentation import covariance_at, now_of, present, status_of
-from backend.live.record import EMPTY, PictureRecord, RecordAlarm, RecordNode, RecordNotice
+from backend.live.record import EMPTY, PictureRecord, RecordAlarm, RecordAside, RecordNode, RecordNotice
 from backend.log.incident import Incident, IncidentSettings
 from estimator.measurements.node import Role
 
@@ -138,6 +138,53 @@ def test_alarms_and_notices_are_shown(incident: Make) -> None:
         ("ff1", "mayday", "raised", 99.0, "trapped")
     ]
     assert [notice.node for notice in frame.notices] == [f"ff{i}" for i in range(12, 20)]
+
+
+def test_why_somebody_has_no_place_is_told_however_much_else_is_noticed(incident: Make) -> None:
+    late = RecordNotice(code="too_late", t=1.0, text="late", node="ff1")
+    others = tuple(RecordNotice(code="echo", t=2.0, text="echo", node=f"b{at}") for at in range(20))
+
+    def told(*nodes: RecordNode) -> set[str | None]:
+        record = PictureRecord(t=100.0, nodes=nodes, notices=(late, *others))
+        return {notice.node for notice in present(record, 1, 100.0, incident()).notices}
+
+    assert "ff1" in told()
+    assert "ff1" in told(responder(position_m=None, covariance_m2=None))
+    assert "ff1" not in told(responder())
+
+
+def test_who_is_set_aside_is_told_from_then_on_unless_live_on_the_map_or_gone(incident: Make) -> None:
+    aside = RecordAside(
+        name="ff1", gateway="g", since_t=150.0, t=160.0, code="time_in_future", text="clock ahead"
+    )
+
+    def told(now: float, *nodes: RecordNode) -> list[tuple[str, float]]:
+        record = PictureRecord(t=100.0, nodes=nodes, set_aside=(aside,))
+        return [(known.name, known.t) for known in present(record, 1, now, incident()).set_aside]
+
+    assert told(149.0) == []
+    assert told(155.0) == [("ff1", 155.0)]
+    assert told(500.0) == [("ff1", 160.0)]
+    assert told(170.0, responder(t=165.0)) == []
+    assert told(170.0, responder(t=165.0, position_m=None, covariance_m2=None)) == [("ff1", 160.0)]
+    assert told(170.0, responder(t=100.0)) == [("ff1", 160.0)]
+    assert told(170.0, responder(t=100.0, retired=True)) == []
+
+
+def test_air_is_low_where_the_whistle_sounds_and_half_used_on_the_way_there(incident: Make) -> None:
+    def air(now: Incident, **fields: Any) -> tuple[str | None, float | None]:
+        (node,) = present(PictureRecord(t=100.0, nodes=(responder(**fields),)), 1, 100.0, now).nodes
+        return node.air_state, node.air_turn_back_bar
+
+    usual, american = incident(), incident(settings=IncidentSettings(low_air_bar=103.0))
+    assert air(usual) == (None, None)
+    assert air(usual, air_first_bar=300.0, air_least_bar=181.0) == (None, 180.0)
+    assert air(usual, air_first_bar=300.0, air_least_bar=180.0) == ("turn_back", 180.0)
+    assert air(usual, air_first_bar=300.0, air_least_bar=61.0) == ("turn_back", 180.0)
+    assert air(usual, air_first_bar=300.0, air_least_bar=60.0) == ("low", 180.0)
+    assert air(usual, air_first_bar=50.0, air_least_bar=50.0) == ("low", 60.0)
+    assert air(usual, air_first_bar=300.0, air_least_bar=60.0, retired=True) == (None, 180.0)
+    assert air(american, air_first_bar=310.0, air_least_bar=103.0) == ("low", 206.5)
 
 
 def test_a_moved_breadcrumb_is_flagged_for_ten_minutes(incident: Make) -> None:

@@ -44,6 +44,18 @@ def test_each_vital_sign_has_the_age_of_its_own_report() -> None:
     assert (node.battery_t, node.air_t, node.temperature_t, node.motionless_t) == (500.0, 10.0, None, None)
 
 
+def test_air_is_that_of_the_cylinder_in_use() -> None:
+    def cylinder(*reported_bar: float) -> tuple[float | None, float | None]:
+        told = [Status(t=float(at), node="ff1", air_bar=bar) for at, bar in enumerate(reported_bar)]
+        (node,) = picture(board(*told), "ff1").nodes
+        return node.air_first_bar, node.air_least_bar
+
+    assert cylinder() == (None, None)
+    assert cylinder(298.0, 301.0, 240.0, 238.0, 241.0) == (301.0, 238.0)
+    assert cylinder(300.0, 58.0, 61.0) == (300.0, 58.0)
+    assert cylinder(300.0, 55.0, 290.0, 280.0) == (290.0, 280.0)
+
+
 def test_who_raises_an_alarm_is_shown_even_if_the_tracker_does_not_know_of_it() -> None:
     made = picture(board(Alarm(t=10.0, node="ff1", alarm="mayday", state="raised")))
     assert [(node.node, node.role, node.t, node.position_m) for node in made.nodes] == [

@@ -1,0 +1,92 @@
+"""What the commander is warned of beside alarms: low air, who is heard and not followed, what went wrong."""
+
+from playwright.sync_api import Page
+
+
+class WarningsSeen:
+    """What is seen of warnings.
+
+    Args:
+        page: a page of the browser.
+    """
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+
+    @property
+    def trouble(self) -> str:
+        """What the top bar says went wrong; nothing if nothing did."""
+        said = self.page.locator("header [role=status]")
+        return said.inner_text() if said.count() else ""
+
+    @property
+    def low_on_air(self) -> list[str]:
+        """Who is low on air: name, pressure and age, one text each."""
+        found = self.page.get_by_test_id("low-on-air").all_inner_texts()
+        return [" ".join(text.split()) for text in found]
+
+    @property
+    def low_air_is_loud(self) -> bool:
+        """Whether the strip that says so has the colour of a warning."""
+        strip = self.page.get_by_test_id("low-air-strip")
+        return bool(strip.count()) and bool(
+            strip.evaluate(
+                """(strip) => {
+                  const probe = document.createElement('i');
+                  probe.style.color = 'var(--warn)';
+                  strip.append(probe);
+                  const warning = getComputedStyle(probe).color;
+                  probe.remove();
+                  return getComputedStyle(strip).backgroundColor === warning;
+                }"""
+            )
+        )
+
+    @property
+    def spoken_of_air(self) -> str:
+        """What a screen reader is told of low air."""
+        return self.page.get_by_test_id("low-air").get_by_role("status").inner_text().strip()
+
+    def has_seen_the_low_air(self) -> None:
+        """Press that it was seen."""
+        self.page.get_by_test_id("low-air").get_by_role("button", name="Seen").click()
+
+    def goes_to_who_is_low_on_air(self) -> None:
+        """Tap the first one."""
+        self.page.get_by_test_id("low-on-air").first.click()
+
+    @property
+    def low_air_too_small_for_gloves(self) -> list[str]:
+        """The buttons of the strip that are lower or narrower than 44 px."""
+        found: list[str] = self.page.get_by_test_id("low-air").evaluate(
+            """(part) => [...part.querySelectorAll('button')].filter((button) => {
+              const {width, height} = button.getBoundingClientRect();
+              return Math.min(width, height) < 44;
+            }).map((button) => button.textContent.trim())"""
+        )
+        return found
+
+    @property
+    def not_followed(self) -> list[str]:
+        """Who is heard and not followed on the map, and why, one text for each reason."""
+        found = self.page.get_by_test_id("not-followed").locator("li").all_inner_texts()
+        return [" ".join(text.split()) for text in found]
+
+    @property
+    def not_followed_in_view(self) -> bool:
+        """Whether that is seen, however far the board is turned."""
+        said, board = (
+            self.page.get_by_test_id("not-followed").bounding_box(),
+            self.page.get_by_test_id("board").bounding_box(),
+        )
+        return (
+            said is not None
+            and board is not None
+            and board["y"] <= said["y"] < board["y"] + board["height"] / 2
+        )
+
+    @property
+    def advice(self) -> str:
+        """What is advised to make a fix surer; nothing where nothing is."""
+        said = self.page.get_by_test_id("advice")
+        return said.inner_text() if said.count() else ""
