@@ -52,6 +52,41 @@ def test_a_closed_incident_opens_as_closed_and_its_past_can_be_looked_at(
     eventually(lambda: commander.mode == "CLOSED")
 
 
+def test_nothing_is_advised_about_what_has_ended(server: Server, post: Post, commander: Commander) -> None:
+    incident = post.open_incident()
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
+    heard(post, incident, step(T0 + 8, "walker", [1, 0, 0]))
+    recorded(post, incident, T0 + 8)
+    commander.opens(server.url, incident)
+    commander.selects("walker")
+    commander.asks_why_here()
+    eventually(lambda: commander.advice)
+    close(post, incident)
+    commander.reloads()
+    eventually(lambda: commander.mode == "CLOSED")
+    commander.asks_why_here()
+    commander.page.wait_for_load_state("networkidle")
+    assert commander.advice == ""
+    assert not commander.has_asked_for("/advice")
+
+
+def test_in_the_past_of_a_live_incident_the_board_says_who_was_live(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident, now = one_inside(post), time.time()
+    commander.opens(server.url, incident)
+    commander.sees("WALKER", "Live")
+    eventually(lambda: time.time() > now + 3)
+    heard(post, incident, step(time.time(), "walker", [1, 0, 0]))
+    recorded(post, incident, now + 1)
+    commander.scrubs_to(now + 1)
+    eventually(lambda: commander.mode == "REPLAY" and commander.board())
+    commander.sees("WALKER", "Was live")
+    eventually(lambda: commander.counts == "1 responder 1 was live 0 stale 0 lost")
+    commander.goes_back_to_live()
+    commander.sees("WALKER", "Live")
+
+
 def test_the_alarms_of_the_past_are_marked_though_they_are_over(
     server: Server, post: Post, commander: Commander
 ) -> None:

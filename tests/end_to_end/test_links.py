@@ -57,7 +57,7 @@ def test_a_link_to_an_incident_that_does_not_exist_says_so_and_shows_no_other_on
     eventually(lambda: "nowhere" in commander.trouble)
     assert commander.incident == "Choose an incident"
     commander.chooses_incident("the older")
-    commander.sees("FF1", "Live")
+    commander.sees("FF1", "Was live")
     eventually(lambda: commander.trouble == "")
 
 
@@ -80,7 +80,7 @@ def test_a_screen_that_was_opened_before_there_was_an_incident_finds_the_first(
         first = post.open_incident("the first")
         heard(post, first, base(T0), responder(T0, "ff1", "A", [2, 2, 0]))
         eventually(lambda: commander.incident == "the first")
-        commander.sees("FF1", "Live")
+        commander.sees("FF1", "Was live")
         post.http.close()
 
 

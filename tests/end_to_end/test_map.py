@@ -58,7 +58,7 @@ def test_a_responder_moves_on_the_map_as_far_as_it_walks(
     assert commander.settled_mark(SECOND_CREW).x == pytest.approx(west.x, abs=1)
     assert (after.x - before.x) / pixels_per_metre == pytest.approx(3.0, abs=0.25)
     assert (after.y - before.y) / pixels_per_metre == pytest.approx(2.0, abs=0.25)
-    assert commander.board()["WALKER"].status == "Live"
+    assert commander.board()["WALKER"].status == "Was live"
     assert commander.board()["WALKER"].age_s == 0
     assert commander.board()["WEST"].age_s == 4
 

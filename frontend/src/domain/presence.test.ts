@@ -21,7 +21,7 @@ test.each<[string, Partial<Looking>, string, string]>([
   expect(newestButton(presence, { ...OPEN, ...looking })).toBe(button);
 });
 
-test("nobody is live in an incident that is over, nor in one whose time stands", () => {
+test("nobody is live in an incident that is over, in one whose time stands, nor in the past", () => {
   expect([liveWords(3, "closed"), liveWords(1, "recorded")]).toEqual(["3 were live", "1 was live"]);
-  expect([liveWords(3, "live"), liveWords(3, "replay")]).toEqual(["3 live", "3 live"]);
+  expect([liveWords(3, "live"), liveWords(3, "replay")]).toEqual(["3 live", "3 were live"]);
 });

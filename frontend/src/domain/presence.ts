@@ -32,12 +32,12 @@ export function badgeOf(presence: Presence): string {
   return BADGES[presence];
 }
 
-/** What is shown is how it was when the last word came: the incident is over, or its time stands until the next. */
+/** What is shown is how it was: in the past, at the end, or, where time stands until the next reading, at the last. */
 export function isOfThen(presence: Presence): boolean {
-  return presence === "closed" || presence === "recorded";
+  return presence === "closed" || presence === "recorded" || presence === "replay";
 }
 
-/** How many are live, where that is so now; in a replay as it was shown then. */
+/** How many are live, where that is so now. */
 export function liveWords(count: number, presence: Presence): string {
   return isOfThen(presence) ? `${count} ${count === 1 ? "was" : "were"} live` : `${count} live`;
 }

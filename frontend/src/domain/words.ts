@@ -16,9 +16,9 @@ const ALARM_WORDS: Record<FrameAlarm["alarm"], string> = {
   help: "HELP",
 };
 
-/** `over`: the incident has ended, and the status is the one at its end. */
-export function statusWord(status: Status, over = false): string {
-  return over && status === "live" ? "Was live" : STATUS_WORDS[status];
+/** `ofThen`: the status is one of the past, or at the end of the incident. */
+export function statusWord(status: Status, ofThen = false): string {
+  return ofThen && status === "live" ? "Was live" : STATUS_WORDS[status];
 }
 
 export function alarmWord(alarm: FrameAlarm["alarm"]): string {
