@@ -14,6 +14,25 @@ class OthersSeen:
         self.page = page
 
     @property
+    def incident_begun(self) -> str:
+        """Whether the incident that is chosen is closed, and when it was begun, under its name."""
+        return self.page.get_by_test_id("incident-begun").inner_text()
+
+    @property
+    def name_and_begin_overlap(self) -> bool:
+        """Whether when the incident was begun lies over its name, or is cut."""
+        fits: bool = self.page.get_by_test_id("incident-begun").evaluate(
+            """(begun) => {
+              const select = begun.parentElement.querySelector('select');
+              const [box, around] = [begun.getBoundingClientRect(), select.getBoundingClientRect()];
+              const nameEnds = around.bottom - parseFloat(getComputedStyle(select).paddingBottom);
+              return begun.scrollWidth <= begun.clientWidth + 1 && box.top >= nameEnds - 4
+                && box.bottom <= around.bottom;
+            }"""
+        )
+        return not fits
+
+    @property
     def calls_elsewhere(self) -> list[str]:
         """What is said of calls for help in other incidents, one text an incident."""
         return [
@@ -44,7 +63,7 @@ class OthersSeen:
         """The incidents of the list that are marked with a call: the call and the incident's name."""
         options = self.page.get_by_test_id("incident-chooser").locator("option").all_inner_texts()
         parts = [option.strip().split(" · ") for option in options]
-        return [f"{call} {name}" for call, name, *_ in parts if call in {"MAYDAY", "PASS", "HELP"}]
+        return [" ".join(words[:2]) for words in parts if words[0] in {"MAYDAY", "PASS", "HELP"}]
 
     def cannot_see_other_incidents(self, *, cut_off: bool) -> None:
         """Let requests for the list of active incidents fail, or no longer."""

@@ -44,6 +44,20 @@ class PastCompared:
         return said.inner_text() if said.count() else ""
 
     @property
+    def days_end_at(self) -> list[str]:
+        """The days that begin on the timeline, each where a mark says so."""
+        found: list[str] = self.page.get_by_test_id("timeline").evaluate(
+            "(bar) => [...bar.querySelectorAll('.midnight')].map((mark) => mark.title)"
+        )
+        return found
+
+    @property
+    def asked_aloud(self) -> str:
+        """The moment at which the timeline's handle stands, as it is read aloud."""
+        slider = self.page.get_by_test_id("timeline").get_by_role("slider")
+        return str(slider.get_attribute("aria-valuetext"))
+
+    @property
     def play_button(self) -> str:
         """Play, where the replay stands; else Pause."""
         return self.page.get_by_test_id("play").inner_text()

@@ -1,6 +1,7 @@
 """However a moment of the past is sought, what is shown and the time that is said belong together."""
 
 import time
+from datetime import datetime
 
 import pytest
 
@@ -50,6 +51,29 @@ def test_until_the_past_has_come_the_present_stays_and_says_that_it_is(
     assert commander.clock == commander.asked
     commander.goes_back_to_live()
     eventually(lambda: commander.mode == "LIVE")
+
+
+def test_of_an_incident_that_goes_on_over_midnight_every_time_is_told_with_its_day(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    midnight = datetime(2025, 11, 22).timestamp()  # noqa: DTZ001 - the commander's own
+    incident = post.open_incident()
+    heard(post, incident, base(midnight - 600), responder(midnight - 600, "walker", "A", [2, 2, 0]))
+    heard(post, incident, *(step(midnight + 100 * at, "walker", [1, 0, 0]) for at in range(-5, 7)))
+    recorded(post, incident, midnight + 600)
+    commander.opens(server.url, incident)
+    assert commander.days_end_at == ["Nov 22, 2025"]
+    for t, day, clock in (
+        (midnight - 90, "Nov 21, 2025", "23:58:30"),
+        (midnight, "Nov 22, 2025", "00:00:00"),
+    ):
+        commander.scrubs_to(t)
+        eventually(lambda clock=clock: commander.mode == "REPLAY" and commander.clock == clock)
+        assert commander.other_day == day
+        assert commander.asked_aloud == f"{day}, {clock}"
+    commander.scrubs_to(midnight - 2)
+    commander.plays()
+    eventually(lambda: (commander.other_day, commander.clock[:5]) == ("Nov 22, 2025", "00:00"))
 
 
 def test_the_handle_of_what_is_live_stands_at_the_end_from_the_first_second_on(

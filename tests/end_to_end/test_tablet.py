@@ -44,6 +44,24 @@ def test_top_bar_and_timeline_lie_in_one_row_each_also_hours_back_in_a_replay(
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768), (768, 1024)])
+@pytest.mark.parametrize("closed", [False, True], ids=["open", "closed"])
+def test_however_long_the_name_of_an_incident_is_when_it_was_begun_is_read(
+    server: Server, post: Post, commander: Commander, width: int, height: int, closed: bool
+) -> None:
+    incident = post.open_incident("Third alarm, office block Hauptstrasse 12 to 18, north wing and courtyard")
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
+    recorded(post, incident, T0)
+    if closed:
+        assert post.http.patch(f"/incidents/{incident}", json={"state": "closed"}).status_code == 200
+    commander.sits_at(width, height)
+    commander.opens(server.url, incident)
+    eventually(lambda: "Nov 21, 2025" in commander.incident_begun)
+    assert commander.incident_begun.startswith("closed") == closed
+    assert not commander.name_and_begin_overlap
+    assert commander.top_bar_height < 60
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768), (768, 1024)])
 def test_what_a_mayday_says_leaves_the_map_its_room(
     server: Server, post: Post, commander: Commander, width: int, height: int
 ) -> None:

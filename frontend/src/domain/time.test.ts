@@ -1,6 +1,6 @@
 import { afterEach, expect, test, vi } from "vitest";
 import { NOON } from "./samples";
-import { beforeEnd, clockTime, dateTime, day, utc, zoneNearChange } from "./time";
+import { beforeEnd, clockTime, dateTime, day, midnights, timeIn, utc, zoneNearChange } from "./time";
 
 afterEach(() => {
   vi.unstubAllEnvs();
@@ -37,6 +37,24 @@ test("a date names the year and the time", () => {
 test("a day is the local one, and universal time is the same everywhere", () => {
   expect(dateTime(NOON)).toBe(`${day(NOON)}, ${clockTime(NOON)}`);
   expect(utc(NOON + 7.25)).toBe("2025-11-21T08:00:07Z");
+});
+
+test("of an incident that goes on over midnight a time is told with its day, and midnight is known", () => {
+  vi.stubEnv("TZ", "Europe/Prague");
+  const midnight = new Date(2026, 0, 6, 0, 0, 0).getTime() / 1000;
+  const evening = { from: midnight - 7200, to: midnight - 1 };
+  const night = { from: midnight - 7200, to: midnight + 3600 };
+  expect(timeIn(evening, midnight - 60)).toBe(clockTime(midnight - 60));
+  expect(timeIn(night, midnight - 60)).toBe(dateTime(midnight - 60));
+  expect([midnights(evening), midnights(night)]).toEqual([[], [midnight]]);
+});
+
+test("midnights are as far apart as the days are long, and those of a wrong clock are none", () => {
+  vi.stubEnv("TZ", "Europe/Prague");
+  const from = new Date(2025, 9, 25, 20, 0, 0).getTime() / 1000;
+  const found = midnights({ from, to: from + 2 * 86_400 });
+  expect(found.map((t) => t - from)).toEqual([4 * 3600, 29 * 3600]);
+  expect(midnights({ from: 5, to: from })).toEqual([]);
 });
 
 test.each([

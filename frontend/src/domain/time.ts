@@ -36,6 +36,26 @@ export function dateTime(t: number): string {
   return `${day(t)}, ${clockTime(t)}`;
 }
 
+/** "21:04:10", and "20 Nov 2025, 21:04:10" where that may be of either of two days. */
+export function timeIn({ from, to }: { from: number; to: number }, t: number): string {
+  return day(from) === day(to) ? clockTime(t) : dateTime(t);
+}
+
+/** So many days are told apart on one bar; more are a wrong clock's. */
+const MOST_DAYS = 31;
+
+/** The local midnights between two moments (Unix s). */
+export function midnights({ from, to }: { from: number; to: number }): number[] {
+  const found: number[] = [];
+  const next = new Date(from * 1000);
+  next.setHours(24, 0, 0, 0);
+  while (next.getTime() / 1000 < to && found.length <= MOST_DAYS) {
+    found.push(next.getTime() / 1000);
+    next.setDate(next.getDate() + 1);
+  }
+  return found.length > MOST_DAYS ? [] : found;
+}
+
 /** "2025-11-20T20:04:10Z": what cannot be misread in another time zone. */
 export function utc(t: number): string {
   return new Date(t * 1000).toISOString().replace(/\.\d+Z$/, "Z");
