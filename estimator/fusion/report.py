@@ -8,6 +8,7 @@ from estimator.fusion.entering.apart import apart_m2, elsewhere_m2
 from estimator.fusion.entering.introduce import tuple_of, upper_triangle
 from estimator.fusion.images import doubt_between_m2
 from estimator.fusion.learned.calibration import doubt
+from estimator.fusion.learned.delays import Suspicion
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.swings import loose_headings, swung_m2
@@ -24,7 +25,7 @@ MOVING_MPS = 0.3
 
 
 def covariance_of(state: FusionState) -> Array:
-    """Σ of the graph, n × n, which holds also that a ranging technology may be of the other kind."""
+    """Σ of the graph, n × n, which holds also that radios may be calibrated otherwise than is assumed."""
     graph = state.graph
     found = graph.covariance()
     for name, known in state.calibrations.items():
@@ -34,7 +35,37 @@ def covariance_of(state: FusionState) -> Array:
             factor = doubt(known, float(graph.reference[row]), variance)
             if factor * variance > NOTHING:
                 widen(found, row, factor)
+    for (_, name), suspicion in state.suspects.items():
+        _widen_by_delay(state, state.nodes[name], suspicion, found)
     return found
+
+
+def _widen_by_delay(state: FusionState, node: NodeState, suspicion: Suspicion, covariance: Array) -> None:
+    """Let who carries a radio be as unsure as its antenna delay is.
+
+    For him the technologies T seem off by u: his place goes along as it does with what these are off by for
+    everybody, by Σ_xT Σ_TT⁻¹ u. Where no other radio takes part, so does everything else.
+
+    Args:
+        state: the fusion.
+        node: who carries it.
+        suspicion: what it may be off by.
+        covariance: Σ, n × n, changed.
+    """
+    graph = state.graph
+    held = {name: graph.starts.get(Variable("range", name)) for name in suspicion.off}
+    off = [(start, suspicion.off[name]) for name, start in held.items() if start is not None]
+    if not node.moving or not node.decided or not off:
+        return
+    at = np.array([(start, start + 1) for start, _ in off]).ravel()
+    by = np.linalg.solve(covariance[at[:, None], at], np.array([numbers for _, numbers in off]).ravel())
+    moved = covariance[:, at] @ by
+    if not suspicion.alone:
+        own = np.zeros(len(moved))
+        for block in (node.position, node.unit if node.mode == "unit" else node.velocity):
+            own[graph.rows(block)] = moved[graph.rows(block)]
+        moved = own
+    covariance += moved[:, None] * moved
 
 
 @njit(cache=True)

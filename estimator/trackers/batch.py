@@ -13,7 +13,7 @@ from estimator.smoothing.images.flips import WHOLE
 from estimator.smoothing.images.likeliest import likeliest
 from estimator.smoothing.images.otherwise import admit
 from estimator.smoothing.results.advice import advise
-from estimator.smoothing.results.calibrated import doubt_scales
+from estimator.smoothing.results.calibrated import doubt_delays, doubt_scales
 from estimator.smoothing.results.evidence import explain
 from estimator.smoothing.results.swung import swing
 from estimator.smoothing.results.tracks import tracks
@@ -45,6 +45,7 @@ class BatchSmoother:
         covariances = solved.chain.covariances()
         swing(problem.layout, solved, covariances)
         doubt_scales(problem.layout, solved, covariances)
+        doubt_delays(problem, solved, covariances)
         admit(problem.layout, solved.x, [*modes, *others], covariances)
         return tracks(problem.layout, solved.x, *covariances, lifetimes(ordered))
 

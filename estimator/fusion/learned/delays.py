@@ -5,10 +5,25 @@ Such a radio's ranges are a technology by themselves, with a scale, a bias and a
 
 from collections.abc import Collection
 
+import msgspec
+
 OF = " of "
 """No technology's name has a space."""
 Radio = tuple[str, str]
 """A technology, and the node that carries the radio."""
+
+
+class Suspicion(msgspec.Struct, frozen=True, array_like=True):
+    """That the radio of somebody who moves may have an antenna delay, though it is trusted.
+
+    Attributes:
+        off: by what scale and bias (m) of the technologies that its ranges count as are then off for it, one
+            standard deviation, by technology.
+        alone: no other radio's ranges count as these.
+    """
+
+    off: dict[str, tuple[float, float]]
+    alone: bool
 
 
 def source_of(technology: str, a: str, b: str, delayed: Collection[Radio]) -> str:

@@ -3,7 +3,7 @@
 import msgspec
 
 from estimator.fusion.learned.calibration import Calibration
-from estimator.fusion.learned.delays import Radio
+from estimator.fusion.learned.delays import Radio, Suspicion
 from estimator.fusion.learned.links import Links
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.learned.reach import Reach
@@ -61,6 +61,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     level_cost: float
     navigations: dict[str, NavigationRecord]
     delayed: list[Radio]
+    suspects: list[tuple[Radio, Suspicion]]
     delays_t: float
     altimeters: dict[str, float]
     clocks: dict[str, float]
@@ -109,6 +110,7 @@ def record_of(state: FusionState) -> FusionRecord:
         state.level_cost,
         {name: navigation_record_of(known) for name, known in state.navigations.items()},
         list(state.delayed),
+        list(state.suspects.items()),
         state.delays_t,
         dict(state.altimeters),
         dict(state.clocks),
@@ -139,6 +141,7 @@ def state_of(record: FusionRecord) -> FusionState:
     state.level_cost = record.level_cost
     state.navigations = {name: navigation_of(known) for name, known in record.navigations.items()}
     state.delayed, state.delays_t = dict.fromkeys(record.delayed), record.delays_t
+    state.suspects = dict(record.suspects)
     state.altimeters = dict(record.altimeters)
     state.clocks = dict(record.clocks)
     state.reach, state.listeners = record.reach, record.listeners

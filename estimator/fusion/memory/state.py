@@ -9,7 +9,7 @@ import numpy as np
 from estimator.estimate import Notice, NoticeCode, Vector3
 from estimator.fusion import physics
 from estimator.fusion.learned.calibration import Calibration, narrow_sigma, scale_sigma
-from estimator.fusion.learned.delays import Radio
+from estimator.fusion.learned.delays import Radio, Suspicion
 from estimator.fusion.learned.gyros import bias_sigma_radps
 from estimator.fusion.learned.links import Links
 from estimator.fusion.learned.noise import LearnedNoise
@@ -62,6 +62,7 @@ class FusionState:
         navigations: of the boots whose units report raw samples, by node.
         calibrations: what is thought of the scale of each ranging technology that reaches odometry.
         delayed: the radios whose antenna delay is not calibrated.
+        suspects: radios that may have one, and are trusted.
         delays_t: when that was asked last (s).
         altimeters: standard deviations of what they are off by beforehand, by their names (m).
         clocks: how late ranges of radios are stamped against their bearers' steps, by node (s).
@@ -101,6 +102,7 @@ class FusionState:
         self.navigations: dict[str, Navigation] = {}
         self.calibrations: dict[str, Calibration] = {}
         self.delayed: dict[Radio, None] = {}
+        self.suspects: dict[Radio, Suspicion] = {}
         self.delays_t = -math.inf
         self.altimeters: dict[str, float] = {}
         self.clocks: dict[str, float] = {}
@@ -122,7 +124,8 @@ class FusionState:
         twin.counts, twin.said, twin.tried = dict(self.counts), dict(self.said), dict(self.tried)
         twin.ended, twin.called, twin.listeners = dict(self.ended), dict(self.called), dict(self.listeners)
         twin.navigations, twin.notices = dict(self.navigations), []
-        twin.delayed, twin.altimeters = dict(self.delayed), dict(self.altimeters)
+        twin.delayed, twin.suspects = dict(self.delayed), dict(self.suspects)
+        twin.altimeters = dict(self.altimeters)
         twin.clocks = dict(self.clocks)
         return twin
 

@@ -9,7 +9,6 @@ than there is to gain (Dempster, Laird, Rubin 1977).
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -20,60 +19,29 @@ from estimator.fusion.learned.delays import Radio, reported_as, source_of
 from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
-from estimator.graph.kernels import Integers
 from estimator.graph.robust import mixture_cost
-from estimator.smoothing.learning.scores import halves, through
+from estimator.smoothing.learning.radios import Delay, Told, common, told_by
+from estimator.smoothing.learning.suspected import suspicions
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
 
-ODDS = math.log(TRUSTED / (1.0 - TRUSTED)) - math.log(physics.DELAYED / (1.0 - physics.DELAYED))
+RARE = math.log(physics.DELAYED / (1.0 - physics.DELAYED))
+ODDS = math.log(TRUSTED / (1.0 - TRUSTED)) - RARE
 """Log likelihood ratio from which on a radio is not trusted any more."""
 ALIKE = 3.0
 """Radios that readings hardly tell apart from the likeliest one are not trusted either."""
 ASKED = 8
-"""So many radios are asked at a time, those with the largest residuals."""
+"""So many radios are asked at a time, those with the largest residuals, and all of who moves."""
 CONSTANT = 0.7
 """What one bias gains of what another one in each half of the time would: a breadcrumb that was kicked, or a
 tag that was put down, is off by something else before and after."""
+NOISE = 3.0
+"""What the latter may gain more by noise alone (log likelihood): such a radio is suspected all the same."""
 FARTHEST = 3.0
 """Of the usual deviation: what is off by more is no antenna delay, but a map that is wrong altogether."""
 NOTHING = 1e-300
 AGAIN, LONGEST_S = 0.5, 60.0
 """It is asked again after this share of the window, or where something is suspicious, with each solution."""
-
-
-class Delay(NamedTuple):
-    """A radio that may be off.
-
-    Attributes:
-        radio: its technology and node.
-        odds: log likelihood ratio of its being off.
-        bias_m: by how much its ranges then are (m).
-    """
-
-    radio: Radio
-    odds: float
-    bias_m: float
-
-
-class Told(NamedTuple):
-    """The ranges of a window, by the radios at their ends.
-
-    Attributes:
-        radios: those that are asked.
-        ranges: which of the window's rows they are, m.
-        carried: which of the radios are at both ends of each, m × 2; −1: one that is not asked.
-        half: in which half of the time it is to each end, m × 2.
-        score: of a bias of each radio in both halves, radios × 2.
-        told: information on it that the ranges alone have, radios × 2.
-    """
-
-    radios: list[Radio]
-    ranges: Integers
-    carried: Integers
-    half: Integers
-    score: Array
-    told: Array
 
 
 def doubt_delays(state: FusionState, problem: Problem, solved: Solved) -> None:
@@ -87,10 +55,14 @@ def doubt_delays(state: FusionState, problem: Problem, solved: Solved) -> None:
     span_s = float(problem.layout.grid[-1] - problem.layout.grid[0])
     if state.newest_t < state.delays_t + min(AGAIN * span_s, LONGEST_S):
         return
-    found = delays(problem, solved)
+    told = told_by(problem, solved)
+    pulling = pulling_of(problem, solved, told)
+    found = _likeliest(pulling, _unbelieved(problem, solved, told))
     if not found or found[0].odds < 0.0:
         state.delays_t = state.newest_t
-    distrust(state, doubted(found))
+    off = doubted(found)
+    state.suspects = suspicions(problem, solved, told, [one for one in pulling if one not in off])
+    distrust(state, off)
 
 
 def doubted(found: list[Delay], least: float = ODDS) -> list[Delay]:
@@ -112,7 +84,7 @@ def distrust(state: FusionState, radios: list[Delay]) -> None:
     """
     if not radios:
         return
-    for (technology, name), _, bias_m in radios:
+    for (technology, name), _, bias_m, *_ in radios:
         state.delayed[technology, name] = None
         text = (
             f"{technology} ranges of {name} are off by {bias_m:+.1f} m: its antenna delay is not calibrated"
@@ -143,53 +115,36 @@ def delays(problem: Problem, solved: Solved) -> list[Delay]:
         problem: of a window, or of the whole incident.
         solved: its solution, whose chain has been reduced.
     """
-    told = _told(problem, solved)
-    found = {one.radio: one for one in _pulling(problem, solved, told)}
-    found |= {one.radio: one for one in _unbelieved(problem, solved, told)}
+    told = told_by(problem, solved)
+    return _likeliest(pulling_of(problem, solved, told), _unbelieved(problem, solved, told))
+
+
+def _likeliest(pulling: list[Delay], unbelieved: list[Delay]) -> list[Delay]:
+    found = {one.radio: one for one in (*pulling, *unbelieved) if one.constant}
     return sorted(found.values(), key=lambda one: -one.odds)
 
 
-def _told(problem: Problem, solved: Solved) -> Told:
-    rows, state = problem.rows, problem.layout.state
-    ranges, nodes = np.flatnonzero(rows.pairs[:, 1] == RANGE), len(state.owners)
-    keys = rows.pairs[ranges, 6:7].astype(np.intp) * nodes + rows.pairs[ranges, 2:4].astype(np.intp)
-    place = np.full(nodes * len(state.sources), -1)
-    each: dict[Radio, int] = {}
-    for key in np.flatnonzero(np.bincount(keys.ravel(), minlength=len(place))).tolist():
-        # A node that came back, or lies elsewhere, carries the radio that it did.
-        radio = reported_as(state.sources[key // nodes]), state.owners[key % nodes]
-        if radio not in state.delayed:
-            place[key] = each.setdefault(radio, len(each))
-    weighted, carried = solved.weighted, place[keys]
-    weight, residual = weighted.information[ranges], weighted.residual[ranges]
-    return Told(list(each), ranges, carried, *halves(carried, weight, residual, len(each)))
-
-
-def _pulling(problem: Problem, solved: Solved, told: Told) -> list[Delay]:
+def pulling_of(problem: Problem, solved: Solved, told: Told) -> list[Delay]:
     """Radios that have bent the map: by their scores, and what of them the map has taken up."""
-    layout, ranges = problem.layout, told.ranges
-    size, total = layout.length * layout.width, told.told.sum(axis=1)
+    layout, total = problem.layout, told.told.sum(axis=1)
+    size = layout.length * layout.width
     suspicion = told.score.sum(axis=1) ** 2 / np.maximum(total, NOTHING)
-    asked = np.argsort(-suspicion, kind="stable")[:ASKED]
-    if not len(asked):
+    nodes, order = layout.state.nodes, np.argsort(-suspicion, kind="stable").tolist()
+    asked = order[:ASKED] + [r for r in order[ASKED:] if nodes[told.radios[r][1]].moving]
+    if not asked:
         return []
-    place = np.full(len(told.radios) + 1, -1)
-    place[asked] = np.arange(len(asked))
-    right = np.zeros((size + layout.border, 2 * len(asked)))
-    rows = problem.rows.columns[ranges], problem.rows.slab[ranges], solved.linear.jacobian[ranges]
-    weight = solved.weighted.information[ranges]
-    through(right, layout.width, size, *rows, weight, told.half, place[told.carried])
+    right = common(problem, solved, told, np.array(asked))
     of_keyframes = right[:size].reshape(layout.length, layout.width, -1)
     taken = solved.chain.explained(of_keyframes, right[size:])
     found = []
-    for i, radio in enumerate(asked.tolist()):
+    for i, radio in enumerate(asked):
         own = slice(2 * i, 2 * i + 2)
         left = np.diag(told.told[radio]) - taken.information[own, own]
-        found.append(_judged(told.radios[radio], told.score[radio] - taken.score[own], left))
+        found.append(judged(told.radios[radio], told.score[radio] - taken.score[own], left))
     return [one for one in found if one is not None]
 
 
-def _judged(radio: Radio, score: Array, left: Array) -> Delay | None:
+def judged(radio: Radio, score: Array, left: Array) -> Delay | None:
     """How likely a radio is to be off; None where it is no antenna delay that it is off by.
 
     Args:
@@ -199,12 +154,18 @@ def _judged(radio: Radio, score: Array, left: Array) -> Delay | None:
     """
     usual, wide = _variances_m2(radio)
     information, pulled = max(float(left.sum()), 0.0), float(score.sum())
-    gain, bias_m = 0.5 * pulled**2 / (information + 1.0 / wide), pulled / (information + 1.0 / wide)
+    known, known_usual = information + 1.0 / wide, information + 1.0 / usual
+    gain, bias_m = 0.5 * pulled**2 / known, pulled / known
     apart = 0.5 * float(score @ np.linalg.solve(left + np.eye(2) / wide, score))
-    if gain < CONSTANT * apart or abs(bias_m) > FARTHEST * math.sqrt(wide):
+    constant = gain >= CONSTANT * apart
+    if (not constant and apart - gain > NOISE) or abs(bias_m) > FARTHEST * math.sqrt(wide):
         return None
-    gain -= 0.5 * pulled**2 / (information + 1.0 / usual)
-    return Delay(radio, gain - _rarer(information, usual, wide), bias_m)
+    odds = gain - 0.5 * pulled**2 / known_usual - _rarer(information, usual, wide)
+    share = 1.0 / (1.0 + math.exp(-max(odds + RARE, -700.0)))
+    square = share * (bias_m**2 + 1.0 / known)
+    square += (1.0 - share) * ((pulled / known_usual) ** 2 + 1.0 / known_usual)
+    # What is usual is in the bias that its technology may have.
+    return Delay(radio, odds, bias_m, constant, max(square - usual, 0.0))
 
 
 def _unbelieved(problem: Problem, solved: Solved, told: Told) -> list[Delay]:
@@ -230,7 +191,9 @@ def _unbelieved(problem: Problem, solved: Solved, told: Told) -> list[Delay]:
         constant = parts.min() > (1.0 - CONSTANT) * parts.mean()
         if constant and abs(bias_m) < FARTHEST * math.sqrt(wide):
             odds = float(parts.sum()) - 0.5 * bias_m**2 / wide
-            found.append(Delay(radio, odds - _rarer(float((sigma**-2.0).sum()), usual, wide), bias_m))
+            odds -= _rarer(float((sigma**-2.0).sum()), usual, wide)
+            # Its ranges bend nothing: no place is off by what they are off by.
+            found.append(Delay(radio, odds, bias_m, constant, 0.0))
     return found
 
 

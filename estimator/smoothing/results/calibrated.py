@@ -1,4 +1,6 @@
-"""What it does to the places of a solved chain that a ranging technology may be calibrated, or not."""
+"""What it does to the places of a solved chain that a technology, or a radio, may be calibrated, or not."""
+
+from collections.abc import Sequence
 
 import numpy as np
 from msgspec.structs import replace
@@ -7,6 +9,10 @@ from estimator.fusion.learned.calibration import Calibration, doubt
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.learning.delays import pulling_of
+from estimator.smoothing.learning.radios import told_by
+from estimator.smoothing.learning.suspected import Suspect, suspects
+from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
 from estimator.smoothing.results.swung import responses
 
@@ -34,28 +40,63 @@ def doubt_scales(layout: Layout, solved: Solved, found: tuple[Array, Array, Arra
         found: covariances of the keyframes, of each with the next one and of the border, as
             `Chain.covariances` gives them; changed in place.
     """
-    keyframes, ahead, border = found
-    size, judged = layout.length * layout.width, scales(layout)
+    judged = scales(layout)
     across = responses(layout, solved, list(judged))
     for i, (row, known) in enumerate(judged.items()):
         factor = doubt(known, float(solved.x[row]), float(across[row, i]))
-        moved, lasting = across[:size, i].reshape(layout.length, -1, STATES), across[size:, i]
-        keyframes += factor * np.einsum("kwi,kwj->kwij", moved, moved)
-        ahead += factor * np.einsum("kwi,kwj->kwij", moved[:-1], moved[1:])
-        border += factor * np.outer(lasting, lasting)
+        _widen(layout, found, factor, across[:, i])
 
 
-def doubted(judged: dict[int, Calibration], x: Array, told: Array, start: int) -> Array:
+def suspected(problem: Problem, solved: Solved) -> list[Suspect]:
+    """Radios that may be off, though they are trusted.
+
+    Args:
+        problem: of the chain.
+        solved: its solution, whose chain is solved.
+    """
+    told = told_by(problem, solved)
+    return list(suspects(problem, solved, told, pulling_of(problem, solved, told)))
+
+
+def doubt_delays(problem: Problem, solved: Solved, found: tuple[Array, Array, Array]) -> None:
+    """Let covariances hold that radios may have an antenna delay.
+
+    Args:
+        problem: of the chain.
+        solved: its solution, whose chain is solved.
+        found: see `doubt_scales`; changed in place.
+    """
+    for suspect in suspected(problem, solved):
+        _widen(problem.layout, found, suspect.off_m2, suspect.moved)
+
+
+def _widen(layout: Layout, found: tuple[Array, Array, Array], square: float, moved: Array) -> None:
+    """Add the mean square of a number to covariances of what moves by so much for each of its units."""
+    keyframes, ahead, border = found
+    size = layout.length * layout.width
+    walks, lasting = moved[:size].reshape(layout.length, -1, STATES), moved[size:]
+    keyframes += square * np.einsum("kwi,kwj->kwij", walks, walks)
+    ahead += square * np.einsum("kwi,kwj->kwij", walks[:-1], walks[1:])
+    border += square * np.outer(lasting, lasting)
+
+
+def doubted(
+    judged: dict[int, Calibration], x: Array, told: Array, radios: Sequence[Suspect], start: int
+) -> Array:
     """What is to be added to one place's covariance, 3 × 3 (m²).
 
     Args:
         judged: see `scales`.
         x: the estimate, flat.
         told: columns of the covariance for these scales, size × m.
+        radios: see `suspected`.
         start: where the place is.
     """
     found = np.zeros((3, 3))
     for i, (row, known) in enumerate(judged.items()):
         across = told[start : start + 3, i]
         found += doubt(known, float(x[row]), float(told[row, i])) * np.outer(across, across)
+    for radio in radios:
+        moved = radio.moved[start : start + 3]
+        found += radio.off_m2 * np.outer(moved, moved)
     return found

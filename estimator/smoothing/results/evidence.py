@@ -25,7 +25,7 @@ from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
 from estimator.smoothing.readings.rows import Rows
-from estimator.smoothing.results.calibrated import doubted, scales
+from estimator.smoothing.results.calibrated import doubted, scales, suspected
 from estimator.smoothing.results.swung import last_headings, responses, swung
 
 HELD_MAX = 30
@@ -82,7 +82,8 @@ def explain(
     total = float(np.trace(covariance[:2, :2]))
     doubt[2, 2] = max(doubt[2, 2], node.doubt_up_m2 - float(covariance[2, 2]))
     doubt += swung(told[:, 3 : 3 + len(headings)], headings, start)
-    doubt += doubted(judged, solved.x, told[:, 3 + len(headings) :], start)
+    told_scales = told[:, 3 + len(headings) :]
+    doubt += doubted(judged, solved.x, told_scales, suspected(problem, solved), start)
     rows = problem.rows
     flat = _flat(layout, rows)
     carried = np.einsum(

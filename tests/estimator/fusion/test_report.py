@@ -8,6 +8,7 @@ from estimator.fusion import physics
 from estimator.fusion.entering.introduce import upper_triangle
 from estimator.fusion.entering.leaving import retire
 from estimator.fusion.learned.calibration import Calibration
+from estimator.fusion.learned.delays import Suspicion
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.report import covariance_of, estimates, relative
@@ -47,6 +48,23 @@ def test_a_picture_holds_both_kinds_of_a_scale_each_as_likely_as_it_is(seed: int
     off = other - x
     mixture = (1.0 - share) * covariance + share * (unsure + np.outer(off, off))
     assert covariance_of(state) == pytest.approx(mixture, rel=1e-6, abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_picture_holds_the_delay_that_a_radio_may_have(seed: int) -> None:
+    """Against a whole solution that has the delay as one more unknown, which readings see as the bias."""
+    matrix, x, covariance = solved(seed, NARROW)
+    sigma_m, seen = 0.7, measured(seed)[0][:, 4]
+    moved = -covariance @ seen
+    scale, bias_m = (sigma_m * moved[3:]).tolist()
+    state = FusionState()
+    state.graph = Kirchhoff.of([PLACE, SCALE], matrix, matrix @ x * 0.0, x)
+    state.nodes["ff1"] = NodeState(node="ff1", role="responder", t=0.0, mode="static")
+    state.suspects["uwb", "ff1"] = Suspicion({"uwb": (scale, bias_m + sigma_m)}, alone=True)
+    assert covariance_of(state) == pytest.approx(covariance)
+    state.nodes["ff1"] = NodeState(node="ff1", role="responder", t=0.0, mode="free")
+    expected = covariance + sigma_m**2 * np.outer(moved, moved)
+    assert covariance_of(state)[:3, :3] == pytest.approx(expected[:3, :3], rel=1e-6, abs=1e-12)
 
 
 def turned(sigma_rad: float) -> FusionState:

@@ -5,10 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from estimator.fusion import physics
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.learning.delays import Delay, delays, doubted
+from estimator.smoothing.learning.delays import delays, doubted, judged
+from estimator.smoothing.learning.radios import Delay
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
 from estimator.smoothing.whole import SLACKS_M
@@ -73,3 +75,21 @@ def test_a_delay_is_the_same_wherever_a_solution_rests(farther_m: float) -> None
     (first, *_), _ = told(problem, solved, farther_m)
     assert first.radio == ("uwb", "f")
     assert first.bias_m == pytest.approx(3.0, abs=1.0)
+
+
+@pytest.mark.parametrize("information", [0.0, 0.5, 20.0, 400.0])
+@pytest.mark.parametrize("bias_m", [0.0, 0.2, -0.5, 1.5])
+def test_a_radio_may_be_off_by_what_readings_and_both_kinds_of_radios_leave_open(
+    information: float, bias_m: float
+) -> None:
+    """Against the mixture's density, summed up over all delays."""
+    found = judged(("uwb", "f"), np.full(2, 0.5 * information * bias_m), 0.5 * information * np.eye(2))
+    usual = physics.RANGE_BIAS_SIGMA_M["uwb"] ** 2
+    wide = usual + physics.DELAY_SIGMA_M**2
+    off_m = np.linspace(-15.0, 15.0, 300_001)
+    usually, rarely = (np.exp(-0.5 * off_m**2 / variance) / math.sqrt(variance) for variance in (usual, wide))
+    density = (1.0 - physics.DELAYED) * usually + physics.DELAYED * rarely
+    density *= np.exp(-0.5 * information * (bias_m - off_m) ** 2)
+    square = float((density * off_m**2).sum() / density.sum())
+    assert found is not None
+    assert found.off_m2 == pytest.approx(max(square - usual, 0.0), rel=1e-6, abs=1e-9)

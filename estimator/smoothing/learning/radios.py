@@ -1,0 +1,87 @@
+"""The ranges of a solution, by the radios at their ends, and what they have in common with its unknowns."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from estimator.fusion.learned.delays import Radio, reported_as
+from estimator.fusion.memory.ledger import RANGE
+from estimator.graph.dense import Array, Indices
+from estimator.graph.kernels import Integers
+from estimator.smoothing.learning.scores import halves, through
+from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.solved import Solved
+
+
+class Delay(NamedTuple):
+    """A radio that may be off.
+
+    Attributes:
+        radio: its technology and node.
+        odds: log likelihood ratio of its being off.
+        bias_m: by how much its ranges then are (m).
+        constant: whether they are off by the same all the time.
+        off_m2: mean square of what they are off by, if it may be off or not, beyond what is usual (m²).
+    """
+
+    radio: Radio
+    odds: float
+    bias_m: float
+    constant: bool
+    off_m2: float
+
+
+class Told(NamedTuple):
+    """The ranges of a window, by the radios at their ends.
+
+    Attributes:
+        radios: those that are asked.
+        ranges: which of the window's rows they are, m.
+        carried: which of the radios are at both ends of each, m × 2; −1: one that is not asked.
+        half: in which half of the time it is to each end, m × 2.
+        score: of a bias of each radio in both halves, radios × 2.
+        told: information on it that the ranges alone have, radios × 2.
+    """
+
+    radios: list[Radio]
+    ranges: Integers
+    carried: Integers
+    half: Integers
+    score: Array
+    told: Array
+
+
+def told_by(problem: Problem, solved: Solved) -> Told:
+    """The ranges of a solution, by the radios at their ends."""
+    rows, state = problem.rows, problem.layout.state
+    ranges, nodes = np.flatnonzero(rows.pairs[:, 1] == RANGE), len(state.owners)
+    keys = rows.pairs[ranges, 6:7].astype(np.intp) * nodes + rows.pairs[ranges, 2:4].astype(np.intp)
+    place = np.full(nodes * len(state.sources), -1)
+    each: dict[Radio, int] = {}
+    for key in np.flatnonzero(np.bincount(keys.ravel(), minlength=len(place))).tolist():
+        # A node that came back, or lies elsewhere, carries the radio that it did.
+        radio = reported_as(state.sources[key // nodes]), state.owners[key % nodes]
+        if radio not in state.delayed:
+            place[key] = each.setdefault(radio, len(each))
+    weighted, carried = solved.weighted, place[keys]
+    weight, residual = weighted.information[ranges], weighted.residual[ranges]
+    return Told(list(each), ranges, carried, *halves(carried, weight, residual, len(each)))
+
+
+def common(problem: Problem, solved: Solved, told: Told, radios: Indices) -> Array:
+    """What the unknowns have in common with biases of radios in both halves of the time, n × 2 c.
+
+    Args:
+        problem: of a window, or of the whole incident.
+        solved: its solution.
+        told: its ranges.
+        radios: which of theirs, c.
+    """
+    layout, ranges = problem.layout, told.ranges
+    size, place = layout.length * layout.width, np.full(len(told.radios) + 1, -1)
+    place[radios] = np.arange(len(radios))
+    right = np.zeros((size + layout.border, 2 * len(radios)))
+    rows = problem.rows.columns[ranges], problem.rows.slab[ranges], solved.linear.jacobian[ranges]
+    weight = solved.weighted.information[ranges]
+    through(right, layout.width, size, *rows, weight, told.half, place[told.carried])
+    return right
