@@ -17,7 +17,7 @@ from estimator.estimate import Relative
 from estimator.measurements import Alarm, AnyReading
 from estimator.trackers.base import Tracker, TrackerSettings
 
-VERSION = 5
+VERSION = 6
 
 STOOD_S = 2.0
 """What was shown for longer is recorded as it was, whatever comes later. Gateways post once a second or more
