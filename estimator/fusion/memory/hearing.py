@@ -100,14 +100,14 @@ def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int)
             heard += 1
             radios[other] = Heard(t, known.heard + 1, 0)
     for other, known in listener.radios.items():
+        if known.silent >= silent:
+            # It is out of reach: of the many that are nothing changes until they are heard again.
+            if other in now and other not in before:
+                crossed(occasions[-1], now[other], other)
+            continue
         if other in before:
             continue
         missed, again = known.silent + 1, other in now
-        if missed > silent:
-            # It is out of reach: of the many that are nothing changes until they are heard again.
-            if again:
-                crossed(occasions[-1], now[other], other)
-            continue
         # Until it is thought to be out of reach, what is not heard of it counts as lost.
         if missed < silent or again:
             lost += 1

@@ -1,5 +1,6 @@
 """Where somebody crosses a radio's reach, from what is heard at all, and what that tells of reaches."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -33,8 +34,12 @@ def hear(state: FusionState, readings: Sequence[Rssi]) -> list[Crossing]:
         The crossings that are sure now.
     """
     heard: dict[tuple[int, str], dict[str, float]] = {}
+    tick, tick_t = 0, math.nan
     for reading in readings:
-        heard.setdefault((tick_of(reading.t), reading.a), {})[reading.b] = reading.t
+        t = reading.t
+        if t != tick_t:
+            tick, tick_t = tick_of(t), t
+        heard.setdefault((tick, reading.a), {})[reading.b] = t
     if not heard:
         return []
     crossings: list[Crossing] = []
