@@ -19,7 +19,7 @@ from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.report import shown, widen
 from estimator.fusion.rows import followed
 from estimator.fusion.rows.rows import FIELDS, ONE
-from estimator.fusion.update import take_in
+from estimator.fusion.update import hold
 from estimator.graph.dense import factorise, inverse
 from estimator.graph.kernels import carry, eliminate, selected_inverse, substitute, take_off
 from estimator.graph.kirchhoff import Kirchhoff
@@ -172,7 +172,8 @@ def _warm_filter() -> None:
     table[0, :2] = ONE, 0.0
     newest = np.array([NEW])
     none = np.zeros(0, dtype=np.intp)
-    take_in(table, *graph.storage(), graph.size, none, newest, np.empty((1, 3)), np.zeros((1, 6)), 1)
+    told, sums, nobody = np.empty((1, 3)), np.zeros((1, 6)), followed.units_from([], [])
+    hold(table, np.zeros(1), nobody, *graph.storage(), graph.size, none, newest, told, sums, 1)
     crossings_in(table, 0)
     graph.add_node(Variable("unit", ""), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     step = np.array([[0.0, 3.0, *(1.0,) * 10]])
@@ -181,10 +182,6 @@ def _warm_filter() -> None:
     offset(ends[0], marks, graph.reference, 0.0)
     technology = np.zeros((1, len(Technology._fields)))
     pair_rows(np.zeros((1, PAIR)), technology, ends, marks, newest, graph.reference)
-    known, links = np.array([followed.NONE]), np.zeros((0, followed.TELLS))
-    place = (graph.storage()[0], graph.reference)
-    units = (np.zeros(1, dtype=np.intp), np.zeros(1), np.zeros(1, dtype=np.bool_))
-    followed.followed(table, np.zeros(1), *units, known, links, *place)
     gone_on(np.zeros(4), full(np.ones(10)), 1.0)
     widen(graph.covariance(), 0, 1.0)
 

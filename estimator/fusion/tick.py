@@ -11,7 +11,6 @@ from estimator.fusion import physics
 from estimator.fusion.entering import again, apart, beginnings, changed, introduce, leaving, retold
 from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.state import AnyHeld, FusionState
-from estimator.fusion.motion.doubted import compare
 from estimator.fusion.motion.free import move_free
 from estimator.fusion.motion.units import drift_units, was_silent
 from estimator.fusion.motion.way import offset_of
@@ -213,8 +212,8 @@ def _hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single]
     pairs.take(between)
     rows = pairs.enter()
     table = table_of(state.graph.starts, singles, rows)
-    compare(state, table, np.concatenate([np.zeros(len(table) - len(rows)), pairs.epochs]))
-    update(state, table)
+    epochs = np.concatenate([np.zeros(len(table) - len(rows)), pairs.epochs]) if singles else pairs.epochs
+    update(state, table, epochs)
     beginnings.decide(state)
     for name, heard_t in until.items():
         node = state.nodes.get(name)

@@ -10,32 +10,43 @@ from estimator.fusion.learned.links import ERROR, KEPT, SAME_PLACE
 from estimator.fusion.learned.noise import near_dbm
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.doubted import NOBODY, answer, ask
 from estimator.fusion.readings import echoes
 from estimator.fusion.readings.crossings import learn_reach
 from estimator.fusion.rows.descent import GOOD, INDEFINITE, PREDICTED, RESIDUAL, SOLVED, Found, descend
+from estimator.fusion.rows.followed import Followed, Units, followed
+from estimator.fusion.rows.foreseen import Foreseen, follow, foresee
 from estimator.fusion.rows.rows import CONSTANT, EXTRA, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
 from estimator.graph.dense import Array, Indices
+from estimator.graph.filter_kernels import scatter
 
 LEVER_M = 20.0
 """A heading's error at the far end of a room's way."""
 ITERATIONS = 6
+Taken = tuple[int, float, bool, int]
+"""What has come of readings that were taken in, see `take_in`."""
 
 
-def update(state: FusionState, table: Array) -> None:
+def update(state: FusionState, table: Array, epochs: Array) -> None:
     """Add measurements (operation 1 of paper A, eq. 18) and solve (eq. 4), relinearised where h is curved.
+
+    Before they are added they are asked whose ways foretell them (`motion.doubted`).
 
     Args:
         state: the fusion; its graph is solved and rests at the new estimate afterwards. Readings that make no
             solvable system are left out.
         table: the readings, see `rows.table_of`.
+        epochs: theirs, m (s).
     """
     if len(table) == 0:
         return
-    told, sums = np.empty((len(table), 3)), np.zeros((len(state.sources), 6))
-    outcome, turned_rad, again, outliers = _take_in(state, table, told, sums)
-    if outcome == INDEFINITE:
+    told, sums, asked = np.empty((len(table), 3)), np.zeros((len(state.sources), 6)), ask(state, table)
+    taken, rivals = _hold(state, table, epochs, asked.told, told, sums)
+    if taken[0] == INDEFINITE:
         state.graph.mend()
-        outcome, turned_rad, again, outliers = _take_in(state, table, told, sums)
+        taken, _ = _hold(state, table, epochs, NOBODY.told, told, sums)
+    answer(state, asked, rivals)
+    outcome, turned_rad, again, outliers = taken
     if outcome != SOLVED:
         return
     state.bent_m += LEVER_M * turned_rad
@@ -48,10 +59,12 @@ def update(state: FusionState, table: Array) -> None:
     _learn(state, table, told, sums)
 
 
-def _take_in(state: FusionState, table: Array, told: Array, sums: Array) -> tuple[int, float, bool, int]:
+def _hold(
+    state: FusionState, table: Array, epochs: Array, units: Units, told: Array, sums: Array
+) -> tuple[Taken, Followed]:
     graph = state.graph
     headings, newest = graph.firsts("unit"), state.links.table
-    return take_in(table, *graph.storage(), graph.size, headings, newest, told, sums, ITERATIONS)
+    return hold(table, epochs, units, *graph.storage(), graph.size, headings, newest, told, sums, ITERATIONS)
 
 
 def _learn(state: FusionState, table: Array, told: Array, sums: Array) -> None:
@@ -63,8 +76,10 @@ def _learn(state: FusionState, table: Array, told: Array, sums: Array) -> None:
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def take_in(
+def hold(
     table: Array,
+    epochs: Array,
+    units: Units,
     matrix: Array,
     vector: Array,
     reference: Array,
@@ -74,11 +89,47 @@ def take_in(
     told: Array,
     sums: Array,
     iterations: int,
-) -> tuple[int, float, bool, int]:
+) -> tuple[Taken, Followed]:
+    """Ask readings of units, then take them in: what is known of them before is worked out once for both.
+
+    Args:
+        table: of m readings, at least one.
+        epochs: theirs, m (s).
+        units: of which they are asked.
+        matrix: see `take_in`.
+        vector: the same.
+        reference: the same.
+        n: the same.
+        headings: the same.
+        links: the same.
+        told: the same.
+        sums: the same.
+        iterations: the same.
+    """
+    seen = foresee(table, matrix, vector[:n], reference[:n])
+    rivals = followed(table, epochs, units, seen, reference[:n])
+    return take_in(table, seen, matrix, vector, reference, n, headings, links, told, sums, iterations), rivals
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def take_in(
+    table: Array,
+    seen: Foreseen,
+    matrix: Array,
+    vector: Array,
+    reference: Array,
+    n: int,
+    headings: Indices,
+    links: Array,
+    told: Array,
+    sums: Array,
+    iterations: int,
+) -> Taken:
     """Add readings to a Kirchhoff state and let it rest at the new estimate; sum up what they tell of noise.
 
     Args:
         table: of m readings.
+        seen: what is known of them before.
         matrix: L, n × n or larger, changed.
         vector: b, as long, changed.
         reference: x, as long, changed.
@@ -94,21 +145,20 @@ def take_in(
         The outcome, see `descent.Found`: unless it is `SOLVED` nothing has been changed; the largest turn of
         a unit (rad); see `odd`; the number of outliers.
     """
-    found = descend(table, matrix[:n, :n].copy(), vector[:n], reference[:n], iterations)
+    found = descend(table, seen, iterations)
     if found.outcome != SOLVED:
         return found.outcome, 0.0, False, 0
-    turned_rad = 0.0
+    x, turned_rad = reference[:n].copy(), 0.0
+    follow(seen, found.x, x)
     for row in headings:
-        turned_rad = max(turned_rad, abs(found.x[row] - reference[row]))
-    for r in range(n):
-        vector[r], reference[r] = 0.0, found.x[r]
-        for c in range(n):
-            matrix[r, c] = found.matrix[r, c]
+        turned_rad = max(turned_rad, abs(x[row] - reference[row]))
+    scatter(matrix, vector, seen.columns, found.jacobian, found.information, found.residual)
+    vector[:n], reference[:n] = 0.0, x
     for r in range(len(table)):
         told[r, RESIDUAL], told[r, PREDICTED] = found.residual[r], found.predicted[r]
         told[r, GOOD] = found.good[r]
     again = odd(table, found.good, links, found.doubted)
-    return found.outcome, turned_rad, again, tally(table, found, links, sums)
+    return found.outcome, turned_rad, again, tally(table, found, x, links, sums)
 
 
 @njit(cache=True, error_model="numpy")
@@ -130,12 +180,13 @@ def odd(table: Array, good: Array, links: Array, doubted: bool) -> bool:
 
 
 @njit(cache=True, error_model="numpy")
-def tally(table: Array, found: Found, links: Array, sums: Array) -> int:
+def tally(table: Array, found: Found, x: Array, links: Array, sums: Array) -> int:
     """Sum up what readings tell of the noise of their technologies, and count the outliers among them.
 
     Args:
         table: of m readings.
         found: what they have led to.
+        x: the estimate, n.
         links: the newest reading on each link, see `links`; its error is changed.
         sums: takes count, squares, pairs, products, seen and powers of each technology, as
             `LearnedNoise.with_errors` does.
@@ -147,7 +198,7 @@ def tally(table: Array, found: Found, links: Array, sums: Array) -> int:
         source, link = int(table[r, SOURCE]), int(table[r, LINK])
         if source < 0:
             continue
-        if near(table[r], residual, found.x):
+        if near(table[r], residual, x):
             if link >= 0:
                 links[link, ERROR] = np.nan
             continue

@@ -16,15 +16,23 @@ STRIP = 64
 
 
 @njit(cache=True, error_model="numpy")
-def cholesky(matrix: Array) -> bool:
-    """Put U with A = Uᵀ U in the place of A's upper triangle, n × n; what is below it has no meaning after.
+def cholesky(matrix: Array, begin: int, end: int) -> bool:
+    """Put rows of U with A = Uᵀ U in the place of those of A's upper triangle, n × n.
+
+    What is below it has no meaning after.
+
+    Args:
+        matrix: A, whose rows before `begin` are those of U already.
+        begin: the first row to be eliminated.
+        end: the one after the last. In the place of the rest is then what A is left with there (paper A,
+            eq. 17), upper triangle.
 
     Returns:
         False where A is not positive definite.
     """
     n = len(matrix)
-    for first in range(0, n, BLOCK):
-        last = min(first + BLOCK, n)
+    for first in range(begin, end, BLOCK):
+        last = min(first + BLOCK, end)
         for i in range(first, last):
             own = matrix[i, i:]
             take_rows(own, matrix[first:i, i], matrix, first, i)
@@ -34,9 +42,9 @@ def cholesky(matrix: Array) -> bool:
             for j in range(len(own)):
                 own[j] *= unscale
         for start in range(last, n, STRIP):
-            end = min(start + STRIP, n)
-            taken = np.dot(matrix[first:last, start:end].copy().T, matrix[first:last, start:].copy())
-            for i in range(end - start):
+            stop = min(start + STRIP, n)
+            taken = np.dot(matrix[first:last, start:stop].copy().T, matrix[first:last, start:].copy())
+            for i in range(stop - start):
                 own, less = matrix[start + i, start + i :], taken[i, i:]
                 for j in range(len(own)):
                     own[j] -= less[j]
@@ -96,8 +104,44 @@ def factorised(matrix: Array, factor: Array, unscale: Array) -> bool:
             for j in range(n - i):
                 scaled[j] = own[j] * unscale[i] * others[j]
             scaled[0] += jitter
-        if cholesky(factor):
+        if cholesky(factor, 0, n):
             return True
+        jitter = 1e-13 if jitter == 0.0 else jitter * 10.0
+    return False
+
+
+@njit(cache=True, error_model="numpy")
+def halved(matrix: Array, order: Indices, first: int, factor: Array, unscale: Array, left: Array) -> bool:
+    """`factorised` with the rows in another order, and what is left of the matrix half-way (paper A, eq. 17).
+
+    Args:
+        matrix: A, n × n or larger.
+        order: which rows of it count, n.
+        first: how many of these are eliminated first.
+        factor: takes U, upper triangle, n × n.
+        unscale: takes the diagonal of D⁻¹, n.
+        left: takes what the others are left with then, k × k.
+
+    Returns:
+        False where A is not finite, or far from positive definite.
+    """
+    n, jitter = len(order), 0.0
+    for i in range(n):
+        own = matrix[order[i], order[i]]
+        unscale[i] = 1.0 / np.sqrt(own) if own > 0.0 else np.nan
+    while jitter <= MAX_JITTER:
+        for i in range(n):
+            row = matrix[order[i]]
+            for j in range(i, n):
+                factor[i, j] = row[order[j]] * unscale[i] * unscale[j]
+            factor[i, i] += jitter
+        if cholesky(factor, 0, first):
+            for i in range(first, n):
+                for j in range(i, n):
+                    whole = factor[i, j] / (unscale[i] * unscale[j])
+                    left[i - first, j - first] = left[j - first, i - first] = whole
+            if cholesky(factor, first, n):
+                return True
         jitter = 1e-13 if jitter == 0.0 else jitter * 10.0
     return False
 
@@ -144,16 +188,22 @@ def forward_all(factor: Array, rights: Array, first: Indices) -> None:
 
 
 @njit(cache=True, error_model="numpy")
+def backward(factor: Array, right: Array) -> None:
+    """Put U⁻¹ r in the place of r, n, for the first n rows of U."""
+    n = len(right)
+    for i in range(n - 1, -1, -1):
+        total = right[i]
+        for j in range(i + 1, n):
+            total -= factor[i, j] * right[j]
+        right[i] = total / factor[i, i]
+
+
+@njit(cache=True, error_model="numpy")
 def solved(factor: Array, unscale: Array, right: Array) -> Array:
     """A⁻¹ r, n, of a matrix that has been `factorised`."""
     answer = right * unscale
     forward(factor, answer, 0)
-    n = len(answer)
-    for i in range(n - 1, -1, -1):
-        total = answer[i]
-        for j in range(i + 1, n):
-            total -= factor[i, j] * answer[j]
-        answer[i] = total / factor[i, i]
+    backward(factor, answer)
     return answer * unscale
 
 

@@ -6,9 +6,9 @@ same: it may be a clock that is off, or a radio that is not on him.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from typing import NamedTuple
 
-import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
@@ -18,7 +18,7 @@ from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import SILENT_S
-from estimator.fusion.rows.followed import NONE, TELLS, followed
+from estimator.fusion.rows.followed import ASKED_T, NONE, Followed, Units, units_from
 from estimator.fusion.rows.rows import KIND
 from estimator.graph.dense import Array
 
@@ -28,29 +28,64 @@ SPOKEN = 0.5
 """So much more than nothing (log odds) speaks against a unit that powers are asked on."""
 
 
-def compare(state: FusionState, table: Array, epochs: Array) -> None:
-    """Ask of a tick's ranges, or powers, whose ways foretell them, before they are taken in.
+class Asked(NamedTuple):
+    """Of whom a tick's ranges, or powers, are asked.
+
+    Attributes:
+        nodes: all who have a unit.
+        told: the same as numbers.
+    """
+
+    nodes: list[NodeState]
+    told: Units
+
+
+NOBODY = Asked([], units_from([], []))
+
+
+def ask(state: FusionState, table: Array) -> Asked:
+    """Of whom to ask a tick's ranges, or powers, whose ways foretell them.
 
     Args:
-        state: the fusion: takes rivals.
+        state: the fusion; who is not asked about any more loses his rival.
         table: of the tick's readings, see `rows.Row`.
-        epochs: theirs, m (s).
     """
-    units = [node for node in state.nodes.values() if node.mode == "unit"]
-    if not units or not len(table):
-        return
-    powers = _asked_by_powers(state, units)
+    nodes = [node for node in state.nodes.values() if node.mode == "unit"]
+    if not nodes or not len(table):
+        return NOBODY
+    powers = _asked_by_powers(state, nodes)
     if not any(powers) and not (table[:, KIND] == RANGE).any():
-        return
-    asked = [_asked(node) for node in units]
+        return NOBODY
+    asked_t = [node.pose_t if _asked(node) else math.nan for node in nodes]
     # Where nobody is asked about there is something to do only for who was.
-    if not any(asked) and all(node.rival is None for node in units):
+    if all(map(math.isnan, asked_t)) and all(node.rival is None for node in nodes):
+        return NOBODY
+    rows, links = [], []
+    for i, (node, t, by_powers) in enumerate(zip(nodes, asked_t, powers, strict=True)):
+        rival, start = node.rival, state.graph.starts[node.position]
+        if rival is None:
+            rows.append((start, t, by_powers, *NONE))
+            continue
+        known = (rival.t, *rival.state, *rival.covariance, rival.odds, rival.ranged_t)
+        rows.append((start, t, by_powers, *known))
+        links += [(i, link.number, link.t, link.gain) for link in rival.links]
+    return Asked(nodes, units_from(rows, links))
+
+
+def answer(state: FusionState, asked: Asked, found: Followed) -> None:
+    """Take down the rivals that a tick's readings have told of.
+
+    Args:
+        state: the fusion: takes them.
+        asked: of whom they were asked.
+        found: what has come of it.
+    """
+    if not found.heard:
         return
-    heard, rivals = _followed(state, units, asked, powers, table, epochs)
-    if not heard:
-        return
-    for node, is_asked, rival in zip(units, asked, rivals, strict=True):
-        if not is_asked and node.rival is not None:
+    for node, asked_t, rival in zip(
+        asked.nodes, asked.told.rows[:, ASKED_T].tolist(), _rivals(found.rivals, found.links), strict=True
+    ):
+        if math.isnan(asked_t) and node.rival is not None:
             state.nodes[node.node] = replace(node, rival=None)
         if rival is None:
             continue
@@ -103,42 +138,6 @@ def _by_powers(node: NodeState, odd: bool) -> bool:
         return odd
     unranged = node.pose_t > known.ranged_t + MEMORY_S
     return unranged and (odd or known.odds > RARE + SPOKEN)
-
-
-def _followed(
-    state: FusionState,
-    units: Sequence[NodeState],
-    asked: Sequence[bool],
-    powers: Sequence[bool],
-    table: Array,
-    epochs: Array,
-) -> tuple[bool, list[Rival | None]]:
-    """Whether a tick's readings may tell of any unit, and the rivals of those of which they do."""
-    starts = [state.graph.starts[node.position] for node in units]
-    pose_t = [node.pose_t if is_asked else math.nan for node, is_asked in zip(units, asked, strict=True)]
-    rivals = [
-        NONE if (r := node.rival) is None else (r.t, *r.state, *r.covariance, r.odds, r.ranged_t)
-        for node in units
-    ]
-    links = [
-        number
-        for i, node in enumerate(units)
-        if node.rival is not None
-        for link in node.rival.links
-        for number in (i, link.number, link.t, link.gain)
-    ]
-    heard, found, tell = followed(
-        table,
-        epochs,
-        np.array(starts, dtype=np.intp),
-        np.array(pose_t),
-        np.array(powers),
-        np.array(rivals),
-        np.array(links, dtype=np.float64).reshape(-1, TELLS),
-        state.graph.storage()[0],
-        state.graph.reference,
-    )
-    return heard, list(_rivals(found, tell))
 
 
 def _rivals(found: Array, tell: Array) -> Iterator[Rival | None]:

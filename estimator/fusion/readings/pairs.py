@@ -126,8 +126,8 @@ class Pairs:
         state = self._state
         made = pair_rows(
             np.array(self._told).reshape(-1, PAIR),
-            table_from(self._technologies),
-            table_from(self._ends),
+            table_from(self._technologies, len(Technology._fields)),
+            table_from(self._ends, len(End._fields)),
             table_of_marks(self._marks),
             state.links.table,
             state.graph.reference,

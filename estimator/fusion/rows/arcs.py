@@ -63,10 +63,11 @@ def alike(table: Array) -> Array:
         table: of m ranges, see `rows.Row`.
     """
     m = len(table)
-    counts = np.ones(m)
+    counts, ends = np.ones(m), table[:, A] + table[:, B]
     for r in range(m):
         for s in range(r):
-            if same_line(table[r], table[s]):
+            # Few of them can have the same ends.
+            if ends[r] == ends[s] and same_line(table[r], table[s]):
                 counts[r] += 1.0
                 counts[s] += 1.0
     return counts

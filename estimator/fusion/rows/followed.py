@@ -1,11 +1,11 @@
 """What a tick's ranges and powers make of the rivals of units, compiled as one call: see `learned.rival`."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from estimator.fusion.learned import rival
 from estimator.fusion.learned.rival import (
@@ -19,8 +19,10 @@ from estimator.fusion.learned.rival import (
     odds_of,
     upper_of,
 )
+from estimator.fusion.rows.foreseen import Foreseen
 from estimator.fusion.rows.foretold import foretell
-from estimator.graph.dense import Array, Indices
+from estimator.fusion.rows.rows import table_from
+from estimator.graph.dense import Array
 
 AGAIN_S = 5.0
 """As long as its unit is believed a rival follows it within so many seconds: it was right until now."""
@@ -33,6 +35,22 @@ NONE = (math.nan,) * WIDTH
 OF, NUMBER = 0, slice(1, 4)
 """Columns of what a link tells: number of the unit, and a row as `rival.odds_of` has it."""
 TELLS = 4
+START, ASKED_T, BY_POWERS, RIVAL = 0, 1, 2, slice(3, 3 + WIDTH)
+"""Columns of a unit: where its position begins; the epoch that this refers to (s), NaN: the unit is not asked
+about; whether powers are told as well; its rival until now."""
+ASKED = 3 + WIDTH
+
+
+class Units(NamedTuple):
+    """Units of which a tick's ranges and powers are asked.
+
+    Attributes:
+        rows: of each `START` and what stands with it, units × `ASKED`.
+        links: what the links of their rivals have told until now, k × `TELLS`.
+    """
+
+    rows: Array
+    links: Array
 
 
 class Followed(NamedTuple):
@@ -49,16 +67,17 @@ class Followed(NamedTuple):
     links: Array
 
 
+def units_from(rows: Sequence[Sequence[float]], links: Sequence[Sequence[float]]) -> Units:
+    """Units and what the links of their rivals have told, as tables."""
+    return Units(table_from(rows, ASKED), table_from(links, TELLS))
+
+
 @njit(cache=True)
 def followed(
     table: Array,
     epochs: Array,
-    units: Indices,
-    pose_t: Array,
-    powers: NDArray[np.bool_],
-    rivals: Array,
-    links: Array,
-    matrix: Array,
+    units: Units,
+    seen: Foreseen,
     x: Array,
 ) -> Followed:
     """Let the rivals of units follow a tick's ranges and powers, before these are taken in.
@@ -66,53 +85,43 @@ def followed(
     Args:
         table: of m readings, see `rows.Row`.
         epochs: theirs, m (s).
-        units: where the position of each begins.
-        pose_t: epoch that each position refers to (s); NaN: the unit is not asked about.
-        powers: of which units powers are told as well.
-        rivals: of each unit until now, units × `WIDTH`.
-        links: what their links have told, k × `TELLS`.
-        matrix: L, n × n or larger.
+        units: of which they are asked.
+        seen: what is known of the readings before they are taken in.
         x: the estimate, n.
     """
-    n = len(x)
-    told, own = foretell(table, epochs, units, powers, matrix[:n, :n], x)
-    found, tell = np.full((len(units), WIDTH), np.nan), np.empty((len(links) + len(told), TELLS))
+    rows, links = units.rows, units.links
+    starts, powers = rows[:, START].astype(np.intp), rows[:, BY_POWERS] != 0.0
+    told, own = foretell(table, epochs, starts, powers, seen, x)
+    found, tell = np.full((len(rows), WIDTH), np.nan), np.empty((len(links) + len(told), TELLS))
     count = 0
-    for i in range(len(units)):
-        mine = np.flatnonzero(told[:, UNIT] == i)
-        if np.isnan(pose_t[i]) or len(mine) == 0:
+    for i in range(len(rows)):
+        mine, pose_t, known_of = np.flatnonzero(told[:, UNIT] == i), rows[i, ASKED_T], rows[i, RIVAL]
+        if np.isnan(pose_t) or len(mine) == 0:
             continue
         readings, gains = told[mine], np.empty(len(mine))
-        place_m, unsure = x[units[i] : units[i] + 2].copy(), covariance_of(own[i])
-        if np.isnan(rivals[i, T]):
-            t, state, upper = min(readings[0, EPOCH], pose_t[i]), np.zeros(4), np.eye(4)
+        place_m, unsure = x[starts[i] : starts[i] + 2].copy(), own[i]
+        if np.isnan(known_of[T]):
+            t, state, upper = min(readings[0, EPOCH], pose_t), np.zeros(4), np.eye(4)
             state[:2], upper[:2, :2] = place_m, unsure
             known = upper_of(upper)
         else:
-            t, state, known = rivals[i, T], rivals[i, STATE].copy(), rivals[i, COVARIANCE].copy()
+            t, state, known = known_of[T], known_of[STATE].copy(), known_of[COVARIANCE].copy()
         begun_t = t
         state, covariance, t = follow(state, known, t, readings, gains)
-        until = max(t, pose_t[i])
+        until = max(t, pose_t)
         newer = told_by_links(links[np.flatnonzero(links[:, OF] == i)][:, NUMBER], readings, gains)
         odds = odds_of(newer, until)
         believed = min(max((STIRRED - odds) / (STIRRED - CALM), 0.0), 1.0)
         share = believed * -math.expm1((begun_t - until) / AGAIN_S)
         state, known = drawn(state, covariance, until - t, place_m, unsure, share)
         found[i, T], found[i, STATE], found[i, COVARIANCE], found[i, ODDS] = until, state, known, odds
-        ranged_t = -np.inf if np.isnan(rivals[i, T]) else rivals[i, RANGED]
+        ranged_t = -np.inf if np.isnan(known_of[T]) else known_of[RANGED]
         # A power has an exponent, a range has none.
         found[i, RANGED] = ranged_t if (readings[:, EXPONENT] > 0.0).all() else max(t, ranged_t)
         for row in newer:
             tell[count, OF], tell[count, NUMBER] = i, row
             count += 1
     return Followed(len(told) > 0, found, tell[:count])
-
-
-@njit(cache=True)
-def covariance_of(own: Array) -> Array:
-    """Of a place, from the variances of east, of north and of their sum, 2 × 2 (m²)."""
-    across = 0.5 * (own[2] - own[0] - own[1])
-    return np.array([[own[0], across], [across, own[1]]])
 
 
 @njit(cache=True)

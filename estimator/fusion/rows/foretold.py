@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from estimator.fusion.learned import rival
 from estimator.fusion.learned.rival import TOLD
 from estimator.fusion.memory.ledger import RANGE, RSSI
-from estimator.fusion.rows.descent import variances
+from estimator.fusion.rows.foreseen import Foreseen
+from estimator.fusion.rows.joint import variances
 from estimator.fusion.rows.rows import (
     A_E,
     B_E,
@@ -19,14 +20,10 @@ from estimator.fusion.rows.rows import (
     NOMINAL,
     OUTLIERS,
     SIGMA,
-    WIDTH,
     A,
     B,
-    columns_of,
-    linearise,
 )
 from estimator.graph.dense import Array, Indices
-from estimator.graph.triangular import factorised
 from estimator.measurements.rssi import rssi_at
 
 NOISIER = 1.5
@@ -42,7 +39,7 @@ class Foretold(NamedTuple):
 
     Attributes:
         told: see `rival.UNIT` and what stands with it, m × `TOLD`, in order of epoch.
-        own: variances of each unit's place: east, north, and east and north together, units × 3 (m²).
+        own: covariance of the place of each unit of which something is told: east, north, units × 2 × 2 (m²).
     """
 
     told: Array
@@ -51,7 +48,7 @@ class Foretold(NamedTuple):
 
 @njit(cache=True)
 def foretell(
-    table: Array, epochs: Array, units: Indices, powers: NDArray[np.bool_], matrix: Array, x: Array
+    table: Array, epochs: Array, units: Indices, powers: NDArray[np.bool_], seen: Foreseen, x: Array
 ) -> Foretold:
     """What is foretold of the ranges of units; of those between two units nothing, for either may be bad.
 
@@ -60,10 +57,10 @@ def foretell(
         epochs: theirs, m (s).
         units: where the position of each begins, ascending or not.
         powers: of which units powers are told as well.
-        matrix: L, n × n, before it takes them in.
+        seen: what is known of them before they are taken in.
         x: the estimate, n.
     """
-    found, own = np.empty((len(table), TOLD)), np.zeros((len(units), 3))
+    found, own = np.empty((len(table), TOLD)), np.zeros((len(units), 2, 2))
     place = np.full(len(x) + 1, -1)
     for i in range(len(units)):
         place[units[i]] = i
@@ -76,23 +73,18 @@ def foretell(
                 table[r, KIND] == RANGE or (powers[unit[r]] and table[r, EXTRA] >= 0)
             )
     some = np.flatnonzero(chosen)
-    if len(some) == 0:
+    if len(some) == 0 or not seen.solvable:
         return Foretold(found[:0], own)
     some = some[np.argsort(epochs[some], kind="mergesort")]
-    rows, m, n = table[some], len(some), len(x)
-    columns, jacobian, residual = columns_of(rows), np.empty((m, WIDTH)), np.empty(m)
-    linearise(rows, columns, x, jacobian, residual)
-    factor, unscale = np.zeros((n, n)), np.empty(n)
-    if not factorised(matrix, factor, unscale):
-        return Foretold(found[:0], own)
-    all_of_it, rest = np.empty(m), np.empty(m)
-    variances(columns, jacobian, factor, unscale, all_of_it)
+    rows, m, columns, covariance = table[some], len(some), seen.columns[some], seen.own[some]
+    jacobian, residual, rest = seen.jacobian[some], seen.residual[some], np.empty(m)
     for k in range(m):
         r = some[k]
         by_a = place[int(rows[k, A])] >= 0
         near, far = (0, 3) if by_a else (3, 0)
         near_m, far_m = (A_E, B_E) if by_a else (B_E, A_E)
         jacobian[k, near : near + 3] = 0.0
+        own[unit[r]] = covariance[k, near : near + 2, near : near + 2]
         squared = 0.0
         for axis in range(3):
             here, there = rows[k, near_m + axis], rows[k, far_m + axis]
@@ -114,12 +106,7 @@ def foretell(
             # A bad unit makes all errors alike: powers would be worth nothing.
             found[k, rival.SIGMA] = rows[k, NOMINAL]
         found[k, rival.OUTLIERS] = min(rows[k, OUTLIERS], rival.OBSTRUCTED)
-        found[k, rival.OFF], found[k, rival.UNSURE] = residual[k], all_of_it[k]
-    variances(columns, jacobian, factor, unscale, rest)
+        found[k, rival.OFF], found[k, rival.UNSURE] = residual[k], seen.predicted[r]
+    variances(covariance, jacobian, rest)
     found[:m, rival.REST] = rest
-    for i in range(len(units)):
-        at, along = np.full((3, WIDTH), -1), np.zeros((3, WIDTH))
-        at[:, 0], at[:, 1] = units[i], units[i] + 1
-        along[0, 0] = along[1, 1] = along[2, 0] = along[2, 1] = 1.0
-        variances(at, along, factor, unscale, own[i])
     return Foretold(found[:m], own)

@@ -116,12 +116,11 @@ def table_of(starts: Mapping[Variable, int], singles: Sequence[Single], pairs: A
         )
         for s in singles
     ]
-    return np.concatenate([table_from(rows), pairs])
+    return np.concatenate([table_from(rows, FIELDS), pairs])
 
 
-def table_from(rows: Sequence[Sequence[float]]) -> Array:
-    """Rows of numbers, at least one, as a table."""
-    width = len(rows[0])
+def table_from(rows: Sequence[Sequence[float]], width: int) -> Array:
+    """Rows of so many numbers, as a table."""
     return np.fromiter(chain.from_iterable(rows), np.float64, len(rows) * width).reshape(-1, width)
 
 

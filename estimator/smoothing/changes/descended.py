@@ -79,7 +79,7 @@ def descended(ranged: Ranged, basis: Array, led: bool, start: Array, known: Arra
             if slack > 0.0:
                 weight, pulled = weighted.good[i] / (ranged.sigma_m[i] ** 2 + slack * slack), residual[i]
             add(along[i], weight, pulled, matrix, right)
-        if not cholesky(matrix):
+        if not cholesky(matrix, 0, len(matrix)):
             break
         forward(matrix, right, 0)
         farthest = 0.0
@@ -167,7 +167,7 @@ def add(along: Array, weight: float, pulled: float, matrix: Array, right: Array)
 @njit(cache=True, error_model="numpy")
 def volume(matrix: Array) -> float:
     """Logarithm of the determinant of a positive definite matrix, whose upper triangle is factorised here."""
-    if not cholesky(matrix):
+    if not cholesky(matrix, 0, len(matrix)):
         return np.inf
     total = 0.0
     for r in range(len(matrix)):

@@ -7,6 +7,7 @@ from estimator.fusion.learned.links import ECHO_M, ECHO_ODDS, ERROR, KEPT, NEW
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.physics import ECHOES
 from estimator.fusion.rows.descent import GOOD, INDEFINITE, RESIDUAL, SOLVED, UNSOLVABLE, Found
+from estimator.fusion.rows.followed import units_from
 from estimator.fusion.rows.rows import (
     EXTRA,
     FIELDS,
@@ -21,17 +22,20 @@ from estimator.fusion.rows.rows import (
     A,
     B,
 )
-from estimator.fusion.update import odd, take_in, tally
+from estimator.fusion.update import hold, odd, tally
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.variable import Variable
 
 POWER_DBM, EXPONENT = -40.0, 2.0
+X = np.array([POWER_DBM, EXPONENT])
+"""A state of one radio law."""
 
 
 def found(residual: Array, predicted: Array, good: Array) -> Found:
-    """What readings have led to, of a state of one radio law."""
-    return Found(SOLVED, np.eye(2), np.array([POWER_DBM, EXPONENT]), residual, predicted, good, False)
+    """What readings have led to."""
+    none = np.zeros(len(residual))
+    return Found(SOLVED, X, np.zeros((len(none), 8)), none, residual, predicted, good, False)
 
 
 def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_link() -> None:
@@ -47,7 +51,7 @@ def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_
     )
     links, sums = np.tile(NEW, (2, 1)), np.zeros((3, 6))
     links[:, KEPT], links[:, ERROR] = 1.0, [1.5, np.nan]
-    tally(table, found(residual, predicted, good), links, sums)
+    tally(table, found(residual, predicted, good), X, links, sums)
     unsure = 0.04 * 0.16 / 0.2
     first, second = 0.3 / 0.5, -0.2 / 0.5
     squares = 0.9 * (0.3**2 + unsure) / 0.25 + 0.8 * (0.2**2 + unsure) / 0.25
@@ -66,7 +70,7 @@ def test_who_rest_side_by_side_tell_nothing_of_the_noise_of_radios_farther_apart
     table[:, NOMINAL], table[:, SIGMA] = 6.0, 6.0
     expected_dbm, residual = np.array([POWER_DBM, POWER_DBM - 10.0 * EXPONENT]), np.array([0.5, 9.0])
     table[:, VALUE] = expected_dbm + residual
-    tally(table, found(residual, np.zeros(2), np.ones(2)), links, sums)
+    tally(table, found(residual, np.zeros(2), np.ones(2)), X, links, sums)
     assert sums[0] == pytest.approx([1.0, (9.0 / 6.0) ** 2, 0.0, 0.0, 1.0, 1.0])
     assert np.isnan(links[0, ERROR])
     assert links[1, ERROR] == pytest.approx(9.0 / 6.0)
@@ -78,10 +82,10 @@ def test_only_a_reading_of_an_echo_tells_by_fitting_that_the_echo_has_ended() ->
     links[0, ECHO_M], links[0, ECHO_ODDS] = 6.0, 0.1
     fits = np.zeros(1), np.zeros(1), np.full(1, 0.9)
     table[0, OUTLIERS] = 0.1
-    tally(table, found(*fits), links, np.zeros((1, 6)))
+    tally(table, found(*fits), X, links, np.zeros((1, 6)))
     assert links[0, ECHO_M] == 6.0
     table[0, OUTLIERS] = ECHOES
-    tally(table, found(*fits), links, np.zeros((1, 6)))
+    tally(table, found(*fits), X, links, np.zeros((1, 6)))
     assert links[0, ECHO_M] == 0.0
 
 
@@ -119,7 +123,8 @@ def held(graph: Kirchhoff, heading_rad: float) -> tuple[tuple[int, float, bool, 
     table[0, KIND], table[0, A], table[0, VALUE] = ONE, 0, heading_rad
     table[0, SIGMA], table[0, NOMINAL], table[0, OUTLIERS] = 0.5, 0.5, 0.0
     newest, sums = np.array([NEW]), np.zeros((1, 6))
-    found = take_in(table, *graph.storage(), graph.size, graph.firsts("unit"), newest, told, sums, 6)
+    headings, epochs, nobody = graph.firsts("unit"), np.zeros(1), units_from([], [])
+    found, _ = hold(table, epochs, nobody, *graph.storage(), graph.size, headings, newest, told, sums, 6)
     return found, told
 
 

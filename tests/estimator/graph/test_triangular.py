@@ -6,7 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.graph.dense import Array
-from estimator.graph.triangular import BLOCK, STRIP, factorised, forward, forward_all, inverted, solved
+from estimator.graph.triangular import (
+    BLOCK,
+    STRIP,
+    factorised,
+    forward,
+    forward_all,
+    halved,
+    inverted,
+    solved,
+)
 
 
 def positive(chance: np.random.Generator, n: int) -> Array:
@@ -74,3 +83,18 @@ def test_many_right_sides_at_once_are_each_of_them(seed: int, n: int, m: int) ->
         forward(factor, right, begins)
     forward_all(factor, rights, first)
     assert rights.transpose() == pytest.approx(each, rel=1e-9, abs=1e-9 * np.abs(each).max(initial=1.0))
+
+
+def test_rows_in_another_order_leave_half_way_what_marginalising_leaves() -> None:
+    """Longer than a block, and halved within one."""
+    n, first = 2 * BLOCK + 5, BLOCK + 7
+    half = np.random.default_rng(2).normal(0.0, 1.0, (n, n))
+    matrix, order = half @ half.T + np.eye(n), np.random.default_rng(3).permutation(n)
+    factor, unscale, left = np.empty((n, n)), np.empty(n), np.empty((n - first, n - first))
+    assert halved(matrix, order, first, factor, unscale, left)
+    gone, kept = order[:first], order[first:]
+    assert left == pytest.approx(np.linalg.inv(np.linalg.inv(matrix)[np.ix_(kept, kept)]))
+    upper = np.triu(factor) / unscale
+    assert upper.T @ upper == pytest.approx(matrix[np.ix_(order, order)])
+    matrix[gone[3], gone[3]] = 0.0
+    assert not halved(matrix, order, first, factor, unscale, left)

@@ -1,6 +1,7 @@
 """The compiled robust step against the same written with whole arrays."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -9,7 +10,17 @@ from hypothesis import strategies as st
 
 from estimator.fusion import physics
 from estimator.fusion.memory.ledger import BEARING, RANGE, RSSI
-from estimator.fusion.rows.descent import BENT, HALVINGS, INDEFINITE, SETTLED, SOLVED, UNSOLVABLE, descend
+from estimator.fusion.rows.descent import (
+    BENT,
+    HALVINGS,
+    INDEFINITE,
+    SETTLED,
+    SOLVED,
+    UNSOLVABLE,
+    Found,
+    descend,
+)
+from estimator.fusion.rows.foreseen import follow, foresee
 from estimator.fusion.rows.rows import (
     A_E,
     B_E,
@@ -30,6 +41,7 @@ from estimator.fusion.rows.rows import (
     table_of,
 )
 from estimator.graph.dense import Array, Indices
+from estimator.graph.filter_kernels import scatter
 from estimator.graph.robust import FARTHER, WILD, weigh
 from estimator.graph.variable import Variable
 from estimator.measurements.bearing import predict_bearing, wrap
@@ -72,7 +84,7 @@ def some_table(chance: np.random.Generator, m: int) -> Array:
                 *chance.normal(0.0, 2.0, 6).tolist(),
             )
         )
-    told = table_from(sorted(pairs)) if pairs else np.empty((0, FIELDS))
+    told = table_from(sorted(pairs), FIELDS)
     return table_of({Variable("position", "0"): 0, Variable("position", "1"): 3}, singles, told)
 
 
@@ -99,6 +111,22 @@ def linearise_plainly(table: Array, columns: Indices, x: Array) -> tuple[Array, 
         residual[mine] = (wrap(off) if kind == BEARING else off)[mine]
         jacobian[mine] = np.concatenate([got.by_a, got.by_b, got.by_extra], axis=1)[mine]
     return jacobian * used, residual
+
+
+class Reached(NamedTuple):
+    """What readings have led to, and the estimate and the information of all numbers with them."""
+
+    found: Found
+    x: Array
+    matrix: Array
+
+
+def reach(table: Array, prior: Array, pull: Array, start: Array) -> Reached:
+    seen, x, matrix = foresee(table, prior, pull, start), start.copy(), prior.copy()
+    found = descend(table, seen, 6)
+    follow(seen, found.x, x)
+    scatter(matrix, np.zeros(len(x)), seen.columns, found.jacobian, found.information, found.residual)
+    return Reached(found, x, matrix)
 
 
 def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, iterations: int) -> Array:
@@ -154,7 +182,10 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
             likely = np.logaddexp(likely, other)
         return float(0.5 * moved @ prior @ moved - pull @ moved - likely.sum())
 
-    x, matrix = start, prior
+    x, matrix = start.copy(), prior
+    # What no reading depends on goes beforehand to where the rest lets it rest.
+    others = np.setdiff1d(np.arange(N), columns)
+    x[others] += np.linalg.solve(prior[np.ix_(others, others)], pull[others])
     whole, residual = dense(x)
     told = linearise_plainly(table, columns, x)[0]
     wider = arcs(told, residual, prior) + logarithms(told, x, prior)
@@ -196,16 +227,28 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
 def test_the_compiled_descent_finds_what_whole_arrays_find(seed: int, m: int) -> None:
     chance = np.random.default_rng(seed)
     table, (prior, pull, start) = some_table(chance, m), some_state(chance)
-    found = descend(table, prior, pull, start, 6)
+    found, x, _ = reach(table, prior, pull, start)
     assert found.outcome == SOLVED
-    assert found.x == pytest.approx(descend_plainly(table, prior, pull, start, 6), abs=1e-6)
+    assert x == pytest.approx(descend_plainly(table, prior, pull, start, 6), abs=1e-6)
 
 
 def test_an_information_matrix_that_is_not_positive_definite_is_told_apart() -> None:
     chance = np.random.default_rng(1)
     table, (prior, pull, start) = some_table(chance, 3), some_state(chance)
-    assert descend(table, -prior, pull, start, 6).outcome == INDEFINITE
-    assert descend(table, prior, np.full(N, np.nan), start, 6).outcome == UNSOLVABLE
+    assert reach(table, -prior, pull, start).found.outcome == INDEFINITE
+    assert reach(table, prior, np.full(N, np.nan), start).found.outcome == UNSOLVABLE
+
+
+def test_a_state_is_told_what_readings_were_solved_by_however_soon_it_is_left() -> None:
+    """Two ranges beside their radios turn their lines of sight with the first step."""
+    beside = [Row(RANGE, 0, 4.0, 0.3, *physics.RANGE_NOISE, 0.3, b_e=east) for east in (1.0, 6.0)]
+    table, known, nowhere = table_from(beside, FIELDS), np.eye(3) / 4.0, np.zeros(3)
+    seen = foresee(table, known, nowhere, np.array([0.0, 1.0, 0.0]))
+    found = descend(table, seen, 1)
+    assert not found.doubted
+    assert np.linalg.norm(found.x - seen.x) > 0.5
+    assert (found.jacobian == seen.jacobian).all()
+    assert not (descend(table, seen, 6).jacobian == seen.jacobian).all()
 
 
 def test_nobody_is_surer_of_where_he_stays_by_a_fix_that_he_does_not_follow() -> None:
@@ -214,9 +257,10 @@ def test_nobody_is_surer_of_where_he_stays_by_a_fix_that_he_does_not_follow() ->
     known = np.outer(along, along) / 0.5**2 + np.outer(across, across) / 5.0**2 + np.diag([0.0, 0.0, 1.0])
     node, noise = Variable("position", "0"), physics.FIX_NOISE
     fix = [Single(node, axis, float(4.0 * along[axis]), 0.05, noise) for axis in range(3)]
-    found = descend(table_of({node: 0}, fix, np.empty((0, FIELDS))), known, np.zeros(3), np.zeros(3), 6)
-    sure = np.linalg.inv(found.matrix)
-    assert np.linalg.norm(found.x - 4.0 * along) > 3.0
+    table = table_of({node: 0}, fix, np.empty((0, FIELDS)))
+    found, x, matrix = reach(table, known, np.zeros(3), np.zeros(3))
+    sure = np.linalg.inv(matrix)
+    assert np.linalg.norm(x - 4.0 * along) > 3.0
     assert along @ sure @ along > 0.9 * 0.5**2
     assert (found.good[:2] < 0.5).all()
 
@@ -229,11 +273,11 @@ def test_a_range_does_not_tell_where_on_its_arc_somebody_is() -> None:
     known = np.diag([0.0, 0.0, 1.0])
     known[:2, :2] = np.outer(was, was) / 0.05**2 + np.outer(across, across) / aside_m**2
     start = np.array([far_m, 0.0, 0.0])
-    table = table_from([Row(RANGE, 0, far_m + 0.1, 0.1, *physics.RANGE_NOISE, 0.1)])
-    found = descend(table, known, np.zeros(3), start, 6)
+    table = table_from([Row(RANGE, 0, far_m + 0.1, 0.1, *physics.RANGE_NOISE, 0.1)], FIELDS)
+    found = reach(table, known, np.zeros(3), start)
     assert np.linalg.norm(found.x - start) < 1.0
     assert np.sqrt(np.linalg.inv(found.matrix)[1, 1]) > 0.8 * aside_m
     # Where another radio tells how far aside he is, both tell all that they know.
     second = Row(RANGE, 0, 50.0, 0.1, *physics.RANGE_NOISE, 0.1, b_e=far_m, b_n=-50.0)
-    both = descend(table_from([*table.tolist(), second]), known, np.zeros(3), start, 6)
+    both = reach(table_from([*table.tolist(), second], FIELDS), known, np.zeros(3), start)
     assert (np.sqrt(np.diag(np.linalg.inv(both.matrix)))[:2] < 0.15).all()

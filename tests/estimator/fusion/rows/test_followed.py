@@ -15,11 +15,14 @@ from estimator.fusion.rows.followed import (
     OF,
     RANGED,
     STATE,
+    TELLS,
     Followed,
     T,
+    Units,
     followed,
     told_by_links,
 )
+from estimator.fusion.rows.foreseen import foresee
 from estimator.fusion.rows.rows import Row, table_of
 from estimator.graph.dense import Array
 
@@ -42,11 +45,12 @@ def heard(unit: int, link: int, power_dbm: float = -70.0) -> Row:
 def follow(
     *rows: Row, pose_t: Array = POSE_T, rivals: Array = NOBODY, links: Array | None = None
 ) -> Followed:
-    table, known = table_of({}, [], np.array(rows, dtype=np.float64)), np.zeros((0, 4))
-    units, known = np.array(UNITS), known if links is None else links
+    table = table_of({}, [], np.array(rows, dtype=np.float64))
+    units = np.column_stack([UNITS, pose_t, np.ones(len(UNITS)), rivals])
     half = np.random.default_rng(5).normal(0.0, 1.0, (len(X), len(X)))
-    powers, matrix = np.ones(len(UNITS), dtype=np.bool_), half @ half.T + np.eye(11)
-    return followed(table, np.full(len(rows), 7.0), units, pose_t, powers, rivals, known, matrix, X)
+    seen = foresee(table, half @ half.T + np.eye(11), np.zeros(11), X)
+    known = np.zeros((0, TELLS)) if links is None else links
+    return followed(table, np.full(len(rows), 7.0), Units(units, known), seen, X)
 
 
 def told(*ranges: tuple[int, float]) -> Array:
