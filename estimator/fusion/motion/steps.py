@@ -9,7 +9,8 @@ from estimator.estimate import Vector3
 from estimator.fusion import physics
 from estimator.fusion.learned.standing import stand_on
 from estimator.fusion.memory.nodes import NodeState
-from estimator.fusion.motion.silence import LONGEST_S, went_on
+from estimator.fusion.motion.silence import LONGEST_S, unheard_m2, went_on
+from estimator.fusion.motion.unseen import STRAIGHT_S, WALKED_MPS, turned_m2, walked_m
 from estimator.fusion.motion.way import Mark
 from estimator.inertial.led import Led
 from estimator.inertial.strapdown import RATE_WALK
@@ -119,7 +120,11 @@ class Step:
         else:
             up += (physics.SCALE_SIGMA * u) ** 2
         up += self._climb_m2(reading, length)
-        noise = walk_noise((across, across, up), reading, length, duration)
+        walked = length if isinstance(reading, Led) else walked_m(length, own)
+        noise = walk_noise((across, across, up), reading, walked, duration)
+        if own > STRAIGHT_S and not isinstance(reading, Led):
+            unseen = turned_m2(own, noise[3], self.node.bias_told)
+            noise = sum_of(noise, (unseen, unseen, 0.0, 0.0, 0.0, 0.0))
         if sets_off:
             noise = sum_of(noise, SET_OFF)
         if own > 0.0:
@@ -236,6 +241,19 @@ def walk_noise(known: Vector3, reading: Displacement, length: float, duration: f
     else:
         heading, bias = TURN_RAD2_PER_M * length + TURN_RAD2_PER_S * duration, BIAS_PER_S * duration
     return e + position, n + position, u + position, heading, bias, SCALE_PER_S * duration
+
+
+def unseen_noise(span_s: float, since_s: float) -> Noise:
+    """Variances of a time of which a unit has told nothing: its bearer walks about (`silence.unheard_m2`).
+
+    Args:
+        span_s: how long it lasts (s).
+        since_s: how long the unit has reported nothing before that (s); infinite: nobody knows.
+    """
+    across = unheard_m2(span_s, since_s)
+    span = min(max(span_s, 0.0), LONGEST_S)
+    turn = (TURN_RAD2_PER_M * WALKED_MPS + TURN_RAD2_PER_S) * span
+    return across, across, 0.1 * across, turn, BIAS_PER_S * span, SCALE_PER_S * span
 
 
 def start_of(reading: Displacement, pose_t: float | None) -> float:

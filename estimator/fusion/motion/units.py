@@ -7,23 +7,35 @@ import numpy as np
 from msgspec.structs import replace
 from numba import njit
 
+from estimator.estimate import Vector3
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.motion.silence import SILENT_S, unheard_m2
-from estimator.fusion.motion.steps import Step, sum_of
+from estimator.fusion.motion.silence import SILENT_S
+from estimator.fusion.motion.steps import Noise, Step, sum_of, unseen_noise
 from estimator.graph.dense import Array, Indices
 from estimator.graph.filter_kernels import advance
 from estimator.measurements.displacement import move
 
 FLOOR = (1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12)
+STOOD: Vector3 = (0.0, 0.0, 0.0)
 
 
 def advance_units(state: FusionState, steps: Sequence[Step]) -> None:
     """One transition for all units that have moved in a tick, by what their displacements add up to."""
+    advance_by(state, [(s.node, s.delta_m, s.duration_s, s.noise) for s in steps])
+
+
+def advance_by(state: FusionState, moves: Sequence[tuple[NodeState, Vector3, float, Noise]]) -> None:
+    """One transition for units.
+
+    Args:
+        state: the fusion: its graph is changed.
+        moves: of each unit its node, displacement in its frame (m), time (s) and variances that it adds.
+    """
     graph, starts = state.graph, state.graph.starts
     told = [
-        (starts[s.node.position], starts[s.node.unit], *s.delta_m, s.duration_s, *sum_of(s.noise, FLOOR))
-        for s in steps
+        (starts[node.position], starts[node.unit], *delta_m, duration_s, *sum_of(noise, FLOOR))
+        for node, delta_m, duration_s, noise in moves
     ]
     rows = np.empty(6 * len(told), dtype=np.intp)
     kernel = np.empty((len(rows), len(rows)))
@@ -117,19 +129,18 @@ def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
         state: the fusion.
         until: the epoch, by unit.
     """
-    nodes = [state.nodes[name] for name in until]
-    noise = np.zeros((len(nodes), 3, 3))
-    for i, (node, t) in enumerate(zip(nodes, until.values(), strict=True)):
+    moves = []
+    for name, t in until.items():
+        node = state.nodes[name]
         since_s = math.inf if node.unit_t is None else node.pose_t - node.unit_t
         if since_s < SILENT_S <= since_s + t - node.pose_t:
             # From now on ranges alone tell where he goes.
             state.suspected = True
-        wander = unheard_m2(t - node.pose_t, since_s)
-        across, up = wander, 0.1 * wander
-        noise[i, 0, 0], noise[i, 1, 1], noise[i, 2, 2] = across, across, up
-        step = (0.0, 0.0, 0.0, across, up, 0.0, 0.0, 0.0, 1.0)
+        noise = unseen_noise(t - node.pose_t, since_s)
+        across, _, up, turn, bias, scale = noise
+        step = (*STOOD, across, up, turn, bias, scale, 1.0)
         state.ledger.add("steps", t, node.index, node.pose_t, *step)
-        state.nodes[node.node] = replace(node, pose_t=t, trail=())
-    rows = np.array([state.graph.starts[node.position] for node in nodes])[:, None] + np.arange(3)
-    still = np.zeros((len(nodes), 3, 3)) + np.eye(3)
-    state.graph.advance(rows, state.graph.reference[rows], still, noise)
+        moves.append((node, STOOD, t - node.pose_t, noise))
+        state.nodes[name] = replace(node, pose_t=t, trail=())
+    # His unit's frame turns on, whether it reports or not.
+    advance_by(state, moves)

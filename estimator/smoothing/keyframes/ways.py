@@ -8,11 +8,12 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion.motion.silence import wandered_m2
+from estimator.fusion.motion.unseen import STRAIGHT_S
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 
-LONG_STEP_S, BRIDGED_M_PER_ROOT_S = 4.0, 1.0
-"""Nobody's way over a longer time is a straight line, but a random walk between its ends."""
+BRIDGED_M_PER_ROOT_S = 1.0
+"""A way over a longer time than `STRAIGHT_S` is a random walk between its ends."""
 SUMS = 12
 """Displacement 3, its first moment 3, variances 5, length."""
 LENGTH = 11
@@ -57,7 +58,7 @@ class Way:
             return np.zeros(len(t))
         before, after = self.marks[right - 1], self.marks[right]
         span = after - before
-        inside = (span > LONG_STEP_S) & (t > before) & (t < after)
+        inside = (span > STRAIGHT_S) & (t > before) & (t < after)
         return np.where(
             inside, BRIDGED_M_PER_ROOT_S**2 * (t - before) * (after - t) / np.maximum(span, 1e-9), 0.0
         )

@@ -2,11 +2,16 @@
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
-from estimator.fusion.motion.units import walk, walked
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.units import drift_units, walk, walked
+from estimator.fusion.tick import fold_tick
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.variable import Variable
+from estimator.measurements.node import Node
+from tests.estimator.trackers.entry import BASE, step
 
 NAMES = ("a", "b")
 
@@ -48,3 +53,19 @@ def test_a_transition_that_rounding_has_spoilt_is_left_to_be_done() -> None:
     assert not walk(steps_of(graph), matrix, vector, reference, graph.size, rows, kernel)
     graph.loosen(rows, kernel)
     assert np.isfinite(graph.information).all()
+
+
+def test_a_silent_units_frame_turns_on_as_its_gyro_is_off() -> None:
+    state, bias_radps, silent_s = FusionState(), 0.002, 100.0
+    node = Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0), heading_sigma_rad=0.01)
+    fold_tick(state, 0.5, [BASE, node])
+    for second in range(1, 61):
+        told = replace(step(float(second), (0.0, 0.0, 0.0)), heading_rad=-bias_radps * second)
+        fold_tick(state, float(second), [told])
+    heading, row = state.nodes["ff1"].unit, state.graph.starts[state.nodes["ff1"].unit]
+    before_rad, told_radps, _ = state.graph.value(heading).tolist()
+    before = state.graph.covariance()[row, row]
+    drift_units(state, {"ff1": 60.0 + silent_s})
+    assert told_radps == pytest.approx(bias_radps, rel=0.2)
+    assert state.graph.value(heading)[0] - before_rad == pytest.approx(told_radps * silent_s, rel=0.01)
+    assert state.graph.covariance()[row, row] > before + 1e-4
