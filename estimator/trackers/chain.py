@@ -3,12 +3,14 @@
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from estimator.estimate import Notice
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.order import end_of_tick, place_of
 from estimator.fusion.tick import fold_tick
 from estimator.inertial.samples import AnyFolded
-from estimator.smoothing.window import keep_up, solve_now
+from estimator.smoothing.window import JOLT_M, keep_up, solve_now
 
 AGES_S, SPACINGS_S = (4.0, 16.0), (0.0, 4.0, 16.0)
 """Up to each age, and beyond the last, checkpoints are kept so far apart: a reading late by x is folded anew
@@ -68,6 +70,7 @@ class Chain:
         for tick in ticks:
             after = self.state.copy()
             fold_tick(after, end_of_tick(tick), sorted(readings[tick], key=place_of))
+            after.bent_m = max(after.bent_m, found_m(self.state, after))
             keep_up(after, end_of_tick(tick))
             notices[tick] = list(after.notices)
             self.checkpoints.append((tick, after))
@@ -93,6 +96,28 @@ class Chain:
         else:
             thinned += self.checkpoints[-2:]
         self.checkpoints = thinned
+
+
+def found_m(before: FusionState, after: FusionState) -> float:
+    """How far a tick's readings have moved somebody of whom it was not known where he was (m).
+
+    Two ranges leave two places. The filter goes to the nearer one, and only a window looks at the other.
+
+    Args:
+        before: the state before the tick.
+        after: the state after it.
+    """
+    farthest_m = 0.0
+    for name, node in after.nodes.items():
+        was = before.nodes.get(name)
+        if was is None or not node.mode == was.mode == "unit":
+            continue
+        off_m = float(np.hypot(*(after.place(node) - before.place(was))[:2])) - (node.way_m - was.way_m)
+        if off_m > max(JOLT_M, farthest_m):
+            at = before.graph.starts[was.position]
+            if np.trace(before.graph.covariance()[at : at + 2, at : at + 2]) > JOLT_M**2:
+                farthest_m = off_m
+    return farthest_m
 
 
 def hurried(
