@@ -20,6 +20,7 @@ from estimator.smoothing.keyframes.priors import own_priors
 from estimator.smoothing.keyframes.walks import Motion, misfit
 from estimator.smoothing.problem.aside import Aside
 from estimator.smoothing.problem.carried import Carried
+from estimator.smoothing.problem.conjugate import Direction, Newton, onwards
 from estimator.smoothing.problem.coupled import Coupled
 from estimator.smoothing.problem.solved import Solved, There
 from estimator.smoothing.readings.curvature import add_bends
@@ -191,8 +192,8 @@ class Problem:
         motions: list[Motion],
         damping: float,
         near: bool,
-    ) -> tuple[Array, float]:
-        """A Newton step, flat, and the gain in log likelihood that it promises.
+    ) -> Newton:
+        """A Newton step.
 
         Args:
             x: the estimate, flat.
@@ -205,6 +206,7 @@ class Problem:
         for signed in (True, False) if near else (False,):
             chain = self.assemble(x, linear, weighted, motions)
             self.bend(chain, x, weighted, signed)
+            slope = chain.slope()
             chain.damp(damping)
             try:
                 steps, fixed = chain.solve(mend=not signed)
@@ -213,7 +215,7 @@ class Problem:
                     raise
                 continue
             break
-        return np.concatenate([steps.ravel(), fixed]), chain.promised
+        return Newton(np.concatenate([steps.ravel(), fixed]), slope, chain.promised)
 
     def bend(self, chain: Chain, x: Array, weighted: Weighted, signed: bool) -> None:
         """Add the rows' own curvature to the normal equations: for the step, not for what is known.
@@ -258,30 +260,33 @@ class Problem:
         cost = self.cost(x, linear.residual, motions)
         doubt = None if kinked is None else (self.rows.residual(kinked) - linear.residual) ** 2
         damping, near, rests = 0.0, False, False
+        before: tuple[Newton, Array] | None = None
         for iteration in range(iterations):
             slack = slacks_m[iteration] if iteration < len(slacks_m) else 0.0
             weighted = self.weigh(linear.residual, slack, doubt if iteration == 0 else None)
-            step, promised = self._step(x, linear, weighted, motions, damping, near and slack == 0.0)
+            newton = self._step(x, linear, weighted, motions, damping, near and slack == 0.0)
+            step, promised = onwards(newton, *before) if before else Direction(newton.step, newton.promised)
             led = x + step
             if not np.abs(led).max(initial=0.0) < NOWHERE:
                 # Readings contradict each other beyond all measure: no step helps.
                 break
             there = self.at(led)
-            if slack == 0.0 and promised > resting:
+            if slack == 0.0 and newton.promised > resting:
                 # The parabola through the cost here, its slope and the cost there: where it is lowest.
                 share = promised / max(2.0 * promised - (cost - there.cost), promised / FARTHEST)
                 if abs(share - 1.0) > CLOSE:
                     there = min(there, self.at(x + max(share, LEAST_SHARE) * step), key=lambda p: p.cost)
             if slack == 0.0 and not there.cost <= cost + ACCEPTED:
                 # The parabola reaches farther than it holds: shorter steps, and more along the slope.
-                damping = max(10.0 * damping, LEAST_DAMPING)
+                damping, before = max(10.0 * damping, LEAST_DAMPING), None
                 if damping > MOST_DAMPING:
                     break
                 continue
+            before = None if slack > 0.0 or damping > 0.0 else (newton, step)
             near = cost - there.cost < NEAR
             x, motions, cost = there.x, there.motions, there.cost
             linear = Linearised(self._jacobian(x), there.residual)
-            rests = slack == 0.0 and promised < resting and damping <= LEAST_DAMPING
+            rests = slack == 0.0 and newton.promised < resting and damping <= LEAST_DAMPING
             if rests:
                 break
             damping = 0.1 * damping if damping > LEAST_DAMPING else 0.0
