@@ -15,6 +15,7 @@ Problem              500    anything that is answered as `application/problem+js
 """
 
 from collections.abc import Sequence
+from http import HTTPStatus
 from typing import ClassVar
 
 import msgspec
@@ -77,6 +78,14 @@ class Problem(Exception):  # noqa: N818 - RFC 9457 calls it a problem
         if self.retry_after_s is not None:
             headers["retry-after"] = str(self.retry_after_s)
         return headers
+
+    def last_response(self) -> bytes:
+        """The whole HTTP/1.1 response, after which the connection closes: for a protocol, below ASGI."""
+        body = self.body()
+        headers = self.headers() | {"content-length": str(len(body)), "connection": "close"}
+        status = f"HTTP/1.1 {self.status} {HTTPStatus(self.status).phrase}"
+        head = [status, *(f"{name}: {value}" for name, value in headers.items()), "", ""]
+        return "\r\n".join(head).encode() + body
 
 
 class NotUnderstood(Problem):

@@ -71,11 +71,7 @@ class RequestWithin(HttpToolsProtocol):
 
     def send_400_response(self, msg: str) -> None:
         """Refuse what is no HTTP, and close."""
-        problem = NotUnderstood(msg)
-        body = problem.body()
-        headers = problem.headers() | {"content-length": str(len(body)), "connection": "close"}
-        lines = ["HTTP/1.1 400 Bad Request", *(f"{name}: {value}" for name, value in headers.items()), "", ""]
-        self.transport.write("\r\n".join(lines).encode() + body)
+        self.transport.write(NotUnderstood(msg).last_response())
         self.transport.close()
 
     def _await_header(self) -> None:

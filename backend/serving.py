@@ -137,7 +137,7 @@ def _serve(settings: Settings) -> None:
         ws_per_message_deflate=False,
         ws_max_size=64 * 1024,
         access_log=False,
-        log_level="warning",
+        log_level="error",  # it warns of what callers send that is no request: they are told, and fill no log
         server_header=False,
         date_header=False,
         timeout_graceful_shutdown=3,

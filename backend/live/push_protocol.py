@@ -13,11 +13,17 @@ from typing import Any
 
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
+from backend.errors import NotUnderstood
+
 EXTENSION = "firethread.push"
 """Under this name of the ASGI scope's extensions a route finds its `Push`."""
 
 UNSENT_BYTES = 32 * 1024
 """What the kernel may hold unsent for a connection: more would be a backlog of old pictures."""
+
+NO_HANDSHAKE = NotUnderstood(
+    "This is no handshake of a WebSocket: send one without a body, and no line of it longer than 8 KiB."
+)
 
 GOING_AWAY = 1001
 _TEXT = 0x81
@@ -59,6 +65,22 @@ class PushProtocol(WebSocketsSansIOProtocol):
         assert extensions is not None  # noqa: S101 - uvicorn sets it
         extensions[EXTENSION] = {"connection": self}
         await super().run_asgi()
+
+    def handle_events(self) -> None:
+        """Refuse what is no handshake, where uvicorn would neither answer nor close."""
+        super().handle_events()
+        if self.conn.handshake_exc is not None and not self.transport.is_closing():
+            self.close_sent = True
+            self.transport.write(NO_HANDSHAKE.last_response())
+            self.transport.close()
+
+    async def send(self, message: Any) -> None:  # an ASGI event
+        """Do what the application asks; a handshake that it has denied is over."""
+        await super().send(message)
+        if self.initial_response is not None and self.close_sent:
+            self.handshake_complete = (
+                True  # or uvicorn logs an error for each, and whoever knocks fills the log
+            )
 
     def push(self, frame: bytes) -> bool:
         """Write a ready-made frame, if the connection has taken what was written before.

@@ -1,5 +1,7 @@
 """Who is let in."""
 
+import base64
+import socket
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,6 +12,8 @@ from websockets.sync.client import connect
 
 from backend.authentication import access_token
 from tests.running import Server
+
+KEY = base64.b64encode(bytes(16))
 
 
 class GuardedServer(Server):
@@ -67,11 +71,30 @@ def test_sockets_are_guarded_too(guarded: Server) -> None:
         assert b"access-token" in bytes(response.body)
 
 
+@pytest.mark.parametrize(
+    ("header", "status"),
+    [
+        (b"upgrade: websocket\r\nsec-websocket-version: 13\r\nsec-websocket-key: " + KEY, b"401"),
+        (b"upgrade: websocket\r\nsec-websocket-version: 3", b"400"),
+        (b"upgrade: h2c", b"401"),
+        (b"no HTTP", b"400"),
+    ],
+)
+def test_nobody_without_the_token_fills_the_log(guarded: Server, header: bytes, status: bytes) -> None:
+    before = guarded.log.read_text()
+    with socket.create_connection(("127.0.0.1", guarded.port), timeout=10) as knocking:
+        knocking.sendall(b"GET /api/v1/incidents/none/live HTTP/1.1\r\nhost: x\r\nconnection: upgrade\r\n")
+        knocking.sendall(header + b"\r\n\r\n")
+        assert knocking.recv(1024).split()[1] == status
+    assert ask(guarded, "/healthz").status_code == 200  # what was to be logged before is
+    assert guarded.log.read_text() == before
+
+
 def test_a_program_may_name_the_token_in_a_socket_s_address(guarded: Server) -> None:
     token = access_token(guarded.data)
-    with connect(f"{guarded.url.replace('http', 'ws')}/api/v1/incidents/none/live?token={token}") as socket:
+    with connect(f"{guarded.url.replace('http', 'ws')}/api/v1/incidents/none/live?token={token}") as opened:
         with pytest.raises(ConnectionClosed) as closed:
-            socket.recv(timeout=5)
+            opened.recv(timeout=5)
         assert closed.value.rcvd is not None
         assert closed.value.rcvd.code == 4404
 

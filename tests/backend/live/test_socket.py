@@ -5,6 +5,7 @@ import socket
 import time
 from collections.abc import Iterator
 
+import msgspec
 import pytest
 from websockets.exceptions import ConnectionClosed
 
@@ -67,6 +68,22 @@ def test_an_unknown_incident_is_told_as_such(server: Server) -> None:
 )
 def test_a_socket_that_is_refused_is_told_why(server: Server, path: str, status: int, said: str) -> None:
     assert_refused(server, path, status, said)
+
+
+@pytest.mark.parametrize(
+    "header", ["Content-Length: 5", "Transfer-Encoding: chunked", "Cookie: " + 9_000 * "x"]
+)
+def test_what_is_no_handshake_is_refused_and_holds_no_connection(server: Server, header: str) -> None:
+    handshake = _handshake(server, "/incidents/nobody/live").replace(
+        b"Upgrade:", f"{header}\r\nUpgrade:".encode()
+    )
+    with socket.create_connection(("127.0.0.1", server.port), timeout=10) as connection:
+        connection.sendall(handshake)
+        answer = b"".join(iter(lambda: connection.recv(4096), b""))
+    head, _, body = answer.partition(b"\r\n\r\n")
+    assert head.startswith(b"HTTP/1.1 400 ")
+    assert b"content-type: application/problem+json" in head
+    assert msgspec.json.decode(body)["status"] == 400
 
 
 def test_a_closed_incident_shows_its_last_frame_and_beats_on(server: Server, post: Post) -> None:
