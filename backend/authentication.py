@@ -2,7 +2,6 @@
 
 import hmac
 import secrets
-from contextlib import suppress
 from http.cookies import CookieError, SimpleCookie
 from pathlib import Path
 from urllib.parse import parse_qs
@@ -12,7 +11,7 @@ from pydantic import BaseModel, Field
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from backend.errors import NotAuthenticated
+from backend.errors import CommandRefused, NotAuthenticated, in_reach
 from backend.problems import answer, deny
 
 COOKIE = "firethread"
@@ -29,14 +28,17 @@ def access_token(data: Path) -> str:
 
     Args:
         data: folder of the deployment.
+
+    Raises:
+        CommandRefused: it cannot be read or written.
     """
-    with suppress(FileNotFoundError):
-        return existing_token(data)
     path = data / TOKEN_FILE
-    token = secrets.token_urlsafe(24)
-    path.touch(mode=0o600)
-    path.chmod(0o600)
-    path.write_text(token + "\n")
+    if not (token := _stored_token(path)):
+        token = secrets.token_urlsafe(24)
+        with in_reach(path):
+            path.touch(mode=0o600)
+            path.chmod(0o600)
+            path.write_text(token + "\n")
     return token
 
 
@@ -47,13 +49,19 @@ def existing_token(data: Path) -> str:
         data: folder of the deployment.
 
     Raises:
-        FileNotFoundError: there is none.
+        CommandRefused: there is none, or it cannot be read.
     """
     path = data / TOKEN_FILE
-    token = path.read_text().strip() if path.is_file() else ""
+    token = _stored_token(path)
     if not token:
-        raise FileNotFoundError(f"there is no access token in {path}: name the folder of the server's --data")
+        raise CommandRefused(f"there is no access token in {path}: name the folder of the server's --data")
     return token
+
+
+def _stored_token(path: Path) -> str:
+    """The token in a file; empty where there is none."""
+    with in_reach(path):
+        return path.read_text().strip() if path.is_file() else ""
 
 
 class Authentication:

@@ -8,6 +8,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import json
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
@@ -15,6 +16,7 @@ from typing import Annotated
 import typer
 
 from backend.bench.cli import bench
+from backend.errors import in_reach
 from backend.log.incident import Clock
 from backend.refusals import refuse, refusing
 from backend.reports import to_standard_error
@@ -67,7 +69,7 @@ def serve(
     """Serve the API and the screen."""
     from backend import serving
 
-    with refusing(serving.ConfigurationRefused):
+    with refusing():
         serving.serve(
             Settings(
                 data=data,
@@ -161,10 +163,11 @@ def import_(
     """Load a recorded log as a new incident: by what its first line says of it, and by what is given here."""
     from backend import recordings
 
-    data.mkdir(parents=True, exist_ok=True)
+    kept = Settings(data=data, database=database)
     with refusing():
+        kept.make_folder()
         done = recordings.import_log(
-            Settings(data=data, database=database).database_url,
+            kept.database_url,
             incident,
             file,
             clock=clock,
@@ -188,8 +191,7 @@ def export(
     from backend import recordings
 
     with refusing():
-        for line in recordings.export_log(Settings(data=data, database=database).database_url, incident):
-            sys.stdout.buffer.write(line)
+        _write(recordings.export_log(Settings(data=data, database=database).database_url, incident))
 
 
 @app.command()
@@ -201,8 +203,16 @@ def convert(
     from backend import recordings
 
     with refusing():
-        for line in recordings.convert(name, folder):
+        _write(recordings.convert(name, folder))
+
+
+def _write(lines: Iterable[bytes]) -> None:
+    """Lines on standard output; a full disk under it is no defect of ours."""
+    for line in lines:
+        with in_reach("standard output"):
             sys.stdout.buffer.write(line)
+    with in_reach("standard output"):
+        sys.stdout.buffer.flush()
 
 
 @app.command()

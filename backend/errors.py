@@ -1,4 +1,4 @@
-"""Every refusal that Firethread gives, as one tree, and its form on the wire (RFC 9457).
+"""Every refusal that Firethread gives: those of requests as one tree with its form on the wire (RFC 9457).
 
 Problem              500    anything that is answered as `application/problem+json`; itself a defect of ours
 ├── NotUnderstood    400    the body is no JSON, or not what the route takes
@@ -12,11 +12,14 @@ Problem              500    anything that is answered as `application/problem+js
 ├── TooBusy          429    the log cannot keep up; come back after `retry_after_s`
 ├── Unavailable      503    the log cannot be written, or the estimator is away
 └── TooSlow          504    what was waited for did not come in time
+
+CommandRefused              what a command was given cannot work; there are kinds of it where they are raised
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from http import HTTPStatus
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
 import msgspec
 
@@ -139,6 +142,24 @@ class Invalid(Problem):
 
     status, slug, title = 422, "invalid", "A field or parameter is not valid"
 
+    @classmethod
+    def by_field(cls, faults: Sequence[Mapping[str, Any]], within: Sequence[str] = ()) -> Self:
+        """Each field with what is wrong with it.
+
+        Args:
+            faults: as pydantic finds them.
+            within: path of what was looked at, where it is itself a field.
+        """
+        errors = [
+            FieldError(
+                code=str(fault["type"]),
+                field=".".join((*within, *map(str, fault["loc"]))),
+                message=str(fault["msg"]).removeprefix("Value error, "),  # pydantic's own, before ours
+            )
+            for fault in faults
+        ]
+        return cls("; ".join(f"{error.field}: {error.message}" for error in errors), errors)
+
 
 class TooBusy(Problem):
     """The log cannot keep up."""
@@ -156,3 +177,26 @@ class TooSlow(Problem):
     """What was waited for did not come in time."""
 
     status, slug, title = 504, "too-slow", "What was waited for did not come in time"
+
+
+class CommandRefused(Exception):  # noqa: N818 - names the condition
+    """What a command was given cannot work; the message is one line that says what to mend."""
+
+
+@contextmanager
+def in_reach(what: object) -> Iterator[None]:
+    """Refuse a file or folder that a command was given where the operating system does.
+
+    Args:
+        what: its name.
+
+    Raises:
+        CommandRefused: it cannot be read or written.
+        BrokenPipeError: whoever read what is written has ended.
+    """
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise CommandRefused(f"{what} cannot be used: {error.strerror or error}") from error

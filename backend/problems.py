@@ -13,7 +13,6 @@ from starlette.websockets import WebSocket
 from backend.errors import (
     PROBLEM_MEDIA_TYPE,
     Conflict,
-    FieldError,
     Invalid,
     NotAllowed,
     NotAuthenticated,
@@ -110,7 +109,6 @@ async def deny(socket: WebSocket, problem: Problem) -> None:
 
 def from_validation(faults: Sequence[dict[str, object]]) -> Problem:
     """The problem that findings are: 400 for no JSON, 415 where it is not announced, else 422 by field."""
-    errors = []
     for fault in faults:
         if fault["type"] == "json_invalid":
             return NotUnderstood(NO_JSON)
@@ -118,10 +116,7 @@ def from_validation(faults: Sequence[dict[str, object]]) -> Problem:
             return WrongMediaType(
                 "The body is not announced as JSON: send it with the content type application/json."
             )
-        place = [str(part) for part in fault["loc"]]  # type: ignore[attr-defined]  # pydantic types it as object
-        message = str(fault["msg"]).removeprefix("Value error, ")  # pydantic's own, before ours
-        errors.append(FieldError(code=str(fault["type"]), field=".".join(place), message=message))
-    return Invalid("; ".join(f"{error.field}: {error.message}" for error in errors), errors)
+    return Invalid.by_field(faults)
 
 
 def openapi_responses(*statuses: int) -> dict[int | str, dict[str, object]]:

@@ -6,6 +6,8 @@ from typing import NoReturn
 
 import typer
 
+from backend.errors import CommandRefused, Problem
+
 
 def refuse(reason: object) -> NoReturn:
     """End with a line that says why."""
@@ -14,19 +16,11 @@ def refuse(reason: object) -> NoReturn:
 
 
 @contextmanager
-def refusing(*more: type[Exception]) -> Iterator[None]:
+def refusing() -> Iterator[None]:
     """What the caller can mend ends in one line; a defect of ours keeps its traceback."""
-    from backend.errors import Problem
-    from backend.log.migrate import SchemaTooNew
-    from backend.recordings import NotTheDataSet
-
     try:
         yield
     except BrokenPipeError:
         raise typer.Exit(1) from None  # whoever read our output has had enough
-    except (Problem, SchemaTooNew, NotTheDataSet, OSError, ValueError) as error:
+    except (CommandRefused, Problem) as error:
         refuse(error)
-    except more as error:
-        refuse(error)
-    except KeyError as error:
-        refuse(error.args[0])

@@ -14,6 +14,7 @@ import structlog
 import uvicorn
 
 from backend.authentication import Authentication, access_token
+from backend.errors import CommandRefused, in_reach
 from backend.ingest.front import TelemetryFirst
 from backend.interpreter import tune_for_serving
 from backend.main import build_app
@@ -24,7 +25,7 @@ from backend.supervision import Child
 log = structlog.get_logger(__name__)
 
 
-class ConfigurationRefused(Exception):  # noqa: N818 - names the condition
+class ConfigurationRefused(CommandRefused):
     """Settings that would be unsafe or cannot work."""
 
 
@@ -81,7 +82,8 @@ def held(folder: Path) -> Iterator[None]:
     Raises:
         ConfigurationRefused: another server has it.
     """
-    handle = os.open(folder, os.O_RDONLY)
+    with in_reach(folder):
+        handle = os.open(folder, os.O_RDONLY)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -108,13 +110,13 @@ def serve(settings: Settings) -> None:
 
     Raises:
         ConfigurationRefused: settings that would be unsafe or cannot work, or the folder is another server's.
-        ValueError: an address or the database's URL is none.
+        CommandRefused: an address or the database's URL is none, or the folder cannot be used.
         LogUnwritable: the database cannot be reached or written.
         SchemaTooNew: a newer version has written the database.
     """
     check(settings)
     raise_open_files()
-    settings.data.mkdir(parents=True, exist_ok=True)
+    settings.make_folder()
     # On Postgres nothing under the folder is written but the token, once.
     with held(settings.data) if settings.database is None else nullcontext():
         _serve(settings)

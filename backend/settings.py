@@ -4,6 +4,8 @@ from pathlib import Path
 
 import msgspec
 
+from backend.errors import CommandRefused, in_reach
+
 LINK_TOKEN_VARIABLE = "FIRETHREAD_LINK_TOKEN"  # noqa: S105 - the variable's name, not a secret
 DATABASE_VARIABLE = "FIRETHREAD_DATABASE"
 MAX_PORT = 65_535
@@ -13,11 +15,11 @@ def host_and_port(address: str) -> tuple[str, int]:
     """Host and port of `HOST:PORT`; an IPv6 host may stand in brackets.
 
     Raises:
-        ValueError: it is no such address.
+        CommandRefused: it is no such address.
     """
     host, _, port = address.rpartition(":")
     if not host or not (port.isascii() and port.isdigit()) or int(port) > MAX_PORT:
-        raise ValueError(f"--link takes HOST:PORT, such as 127.0.0.1:7070, not {address!r}")
+        raise CommandRefused(f"--link takes HOST:PORT, such as 127.0.0.1:7070, not {address!r}")
     return host.removeprefix("[").removesuffix("]"), int(port)
 
 
@@ -51,6 +53,15 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True):
     max_body_bytes: int = 8 * 1024 * 1024
     queue_bytes: int = 64 * 1024 * 1024
     shown_hz: float = 10.0
+
+    def make_folder(self) -> None:
+        """Make the folder where there is none yet.
+
+        Raises:
+            CommandRefused: the operating system does not let us.
+        """
+        with in_reach(f"--data {self.data}"):
+            self.data.mkdir(parents=True, exist_ok=True)
 
     @property
     def database_url(self) -> str:

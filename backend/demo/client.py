@@ -7,6 +7,8 @@ from typing import Any
 import httpx2
 import structlog
 
+from backend.errors import CommandRefused
+
 log = structlog.get_logger(__name__)
 
 FIRST_PAUSE_S = 0.2
@@ -20,7 +22,7 @@ class IncidentGone(Exception):  # noqa: N818 - names the condition
     """The incident was closed, or its database is a new one."""
 
 
-class Refused(Exception):  # noqa: N818 - names the condition
+class Refused(CommandRefused):
     """The server refuses what we send, and would refuse it again."""
 
 
@@ -32,13 +34,13 @@ class Client:
         token: its access token; None where it is open.
 
     Raises:
-        ValueError: `url` is no address of a server.
+        CommandRefused: `url` is no address of a server.
     """
 
     def __init__(self, url: str, token: str | None) -> None:
         # What is no address would never be answered, and be tried again for ever.
-        if not url.startswith(("http://", "https://")) or not httpx2.URL(url).host:
-            raise ValueError(f"--url takes an address such as http://127.0.0.1:8000, not {url!r}")
+        if not url.startswith(("http://", "https://")) or not _host_of(url):
+            raise CommandRefused(f"--url takes an address such as http://127.0.0.1:8000, not {url!r}")
         headers = {} if token is None else {"authorization": f"Bearer {token}"}
         # A proxy of the environment has no business between a gateway and its server.
         self._http = httpx2.AsyncClient(
@@ -125,6 +127,14 @@ class Client:
             # Gateways that lost the same server must not all come back in the same instant.
             await asyncio.sleep(wait_s * random.uniform(1.0, 1.2))  # noqa: S311 - spreads load, guards nothing
             pause_s = min(2 * pause_s, LONGEST_PAUSE_S)
+
+
+def _host_of(url: str) -> str:
+    """The host that a URL names; empty where it names none, or is no URL."""
+    try:
+        return httpx2.URL(url).host
+    except httpx2.InvalidURL:
+        return ""
 
 
 def _retry_after_s(answer: httpx2.Response, otherwise_s: float) -> float:

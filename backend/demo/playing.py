@@ -9,7 +9,8 @@ import structlog
 
 from backend.demo.batching import batches_of, body_of, gateways_of
 from backend.demo.client import Client, IncidentGone, Refused
-from estimator.simulate import Scenario, scenario
+from backend.errors import CommandRefused
+from estimator.simulate import Scenario, scenario, scenario_names
 
 log = structlog.get_logger(__name__)
 
@@ -33,12 +34,13 @@ async def play(
         once: one round only.
 
     Raises:
-        KeyError: there is no such scenario.
-        ValueError: `speed` is not above 0.
+        CommandRefused: there is no such scenario, or `speed` is not above 0.
         Refused: the server does not take what we send (a missing token, for one).
     """
     if not speed > 0.0:
-        raise ValueError(f"--speed must be above 0, not {speed}")
+        raise CommandRefused(f"--speed must be above 0, not {speed}")
+    if scenario_name not in scenario_names():
+        raise CommandRefused(f"--scenario is one of {', '.join(scenario_names())}, not {scenario_name!r}")
     played = scenario(scenario_name, seed)
     client = Client(url, token)
     try:

@@ -5,7 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Response
 from pydantic import ValidationError
 
-from backend.errors import FieldError, Invalid
+from backend.errors import Invalid
 from backend.incidents.models import IncidentChange, NewIncident
 from backend.log.incident import Incident, State
 from backend.log.incidents import IncidentStore
@@ -36,10 +36,6 @@ def incidents_router(store: IncidentStore) -> APIRouter:
         try:
             return store.change(incident, change.model_dump(exclude_unset=True))
         except ValidationError as error:
-            faults = [
-                FieldError(code=fault["type"], field="body.settings", message=fault["msg"])
-                for fault in error.errors()
-            ]
-            raise Invalid("; ".join(fault.message for fault in faults), faults) from error
+            raise Invalid.by_field(error.errors(), ("body", "settings")) from error
 
     return router

@@ -9,6 +9,7 @@ from sqlite3 import OperationalError as SqliteError
 
 import sqlalchemy as sa
 
+from backend.errors import CommandRefused
 from backend.log.base import LogUnreadable, LogUnwritable
 
 BUSY_TIMEOUT_S = 10
@@ -36,19 +37,19 @@ def understood(url: str) -> sa.URL:
         url: SQLAlchemy URL.
 
     Raises:
-        ValueError: it is none, or of neither SQLite nor Postgres; what it was is not repeated: it may hold a
-            password.
+        CommandRefused: it is none, or of neither SQLite nor Postgres; what it was is not repeated: it may
+            hold a password.
     """
     try:
         parts = sa.engine.make_url(url)
         kind, driver = parts.get_backend_name(), parts.get_driver_name()
     except (sa.exc.ArgumentError, ValueError):
-        raise ValueError(
+        raise CommandRefused(
             "--database takes a URL such as postgresql://USER:PASSWORD@HOST/NAME, and what was given is none"
         ) from None
     if (kind, driver) not in {("postgresql", "psycopg"), ("sqlite", "pysqlite")}:
         shown = parts.drivername
-        raise ValueError(
+        raise CommandRefused(
             f"the log is kept in SQLite or Postgres (psycopg), not in {shown!r}: check --database"
         )
     return parts
@@ -63,7 +64,7 @@ def make_engine(url: str, *, checkpoints: bool = False) -> sa.Engine:
             appends does; SQLite below 3.51.3 may lose pages where two connections checkpoint.
 
     Raises:
-        ValueError: it is no URL, or of neither SQLite nor Postgres.
+        CommandRefused: it is no URL, or of neither SQLite nor Postgres.
     """
     parts = understood(url)
     if parts.get_backend_name() == "postgresql":

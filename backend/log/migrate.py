@@ -8,6 +8,7 @@ from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
 
+from backend.errors import CommandRefused
 from backend.log.base import LogUnwritable
 from backend.log.engine import cause_of, make_engine, writing
 
@@ -15,7 +16,7 @@ _POSTGRES_LOCK = 0x46495245
 """Any number, the same in every version: it keeps two processes from migrating at once."""
 
 
-class SchemaTooNew(Exception):  # noqa: N818 - names the condition
+class SchemaTooNew(CommandRefused):
     """The database was written by a newer version."""
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from pydantic import Field, ValidationError
 
-from backend.errors import NotUnderstood
+from backend.errors import Invalid, NotUnderstood
 from backend.log.incident import Clock, Incident, IncidentSettings, Level, Name, Origin, Value
 
 
@@ -47,8 +47,5 @@ def understood(said: dict[str, Any] | None) -> About:
     try:
         return About.model_validate(said or {})
     except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"])
-        raise NotUnderstood(
-            f"What is said of the incident is not understood: `{place}`: {first['msg']}."
-        ) from error
+        faults = Invalid.by_field(error.errors())
+        raise NotUnderstood(f"What is said of the incident is not understood: {faults.detail}.") from error

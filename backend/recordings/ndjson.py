@@ -12,8 +12,9 @@ from tempfile import NamedTemporaryFile
 
 import msgspec
 import sqlalchemy as sa
+from pydantic import ValidationError
 
-from backend.errors import NotFound, NotUnderstood, Problem, TooLarge
+from backend.errors import Invalid, NotFound, NotUnderstood, Problem, TooLarge, in_reach
 from backend.log.append import append_group
 from backend.log.base import NewBatch
 from backend.log.decode import judge
@@ -95,10 +96,10 @@ def import_log(
 
     Raises:
         NotUnderstood: a line is no batch, and the message names it; or there is none, or no name.
-        pydantic.ValidationError: the settings contradict each other.
+        Invalid: a setting is out of bounds, or they contradict each other.
         TooLarge: a line has more readings than a batch may have.
         SchemaTooNew: a newer version has written the database.
-        OSError: the file cannot be read.
+        CommandRefused: the file cannot be read.
         Problem: the log refused a batch, for one because somebody has closed the incident meanwhile.
         LogUnwritable: the database cannot be written.
     """
@@ -108,7 +109,7 @@ def import_log(
         known = known.model_copy(update={field: value for field, value in given.items() if value is not None})
         if known.name is None:
             raise NotUnderstood(f"{said} does not say the name of its incident: give it one by --incident.")
-        merged = IncidentSettings.model_validate(known.settings.model_dump() | (settings or {}))
+        merged = _merged(known.settings, settings or {})
         total = sum(1 for _ in batches_in(file, "", known.clock, said))
         if total == 0:
             raise NotUnderstood(f"{said} holds no batch: an export of an incident has a line for each.")
@@ -139,8 +140,9 @@ def _readable_twice(path: Path) -> Iterator[tuple[Path, str]]:
         yield path, str(path)
         return
     with NamedTemporaryFile(prefix="firethread-", suffix=".ndjson") as copy:
-        shutil.copyfileobj(sys.stdin.buffer, copy)
-        copy.flush()
+        with in_reach("standard input, or its copy on disk,"):
+            shutil.copyfileobj(sys.stdin.buffer, copy)
+            copy.flush()
         yield Path(copy.name), "standard input"
 
 
@@ -195,7 +197,7 @@ def batches_in(path: Path, incident: str, clock: Clock, said: str) -> Iterator[N
     Raises:
         NotUnderstood: a line is no batch; the message names it.
         TooLarge: a line has more readings than a batch may have.
-        OSError: the file cannot be read.
+        CommandRefused: the file cannot be read.
     """
     begun = False
     for number, line in _lines(path, said):
@@ -218,9 +220,17 @@ def _about(path: Path, said: str) -> About:
     return understood(None)
 
 
+def _merged(settings: IncidentSettings, given: dict[str, object]) -> IncidentSettings:
+    """Settings, with those that are given in their places."""
+    try:
+        return IncidentSettings.model_validate(settings.model_dump() | given)
+    except ValidationError as error:
+        raise Invalid.by_field(error.errors(), ("settings",)) from error
+
+
 def _lines(path: Path, said: str) -> Iterator[tuple[int, Line]]:
     """The lines that are not empty, with their numbers from 1."""
-    with path.open("rb") as file:
+    with in_reach(said), path.open("rb") as file:
         for number, text in enumerate(file, start=1):
             if text.strip():
                 with _naming(said, number):
@@ -234,7 +244,8 @@ def _naming(said: str, number: int) -> Iterator[None]:
     try:
         yield
     except (NotUnderstood, TooLarge) as error:
-        raise type(error)(f"{said}, line {number}: {error.detail} Nothing was imported.") from error
+        why = error.detail.removesuffix(".")
+        raise type(error)(f"{said}, line {number}: {why}. Nothing was imported.") from error
 
 
 def _new_batch(line: Line, incident: str, clock: Clock) -> NewBatch:

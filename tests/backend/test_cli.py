@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from backend.refusals import refusing
 from backend.settings import LINK_TOKEN_VARIABLE
 
 NO_DATABASE = "postgresql://127.0.0.1:1/nowhere"
@@ -27,10 +28,37 @@ NO_DATABASE = "postgresql://127.0.0.1:1/nowhere"
         (["worker", "--link", "web:70700"], "--link takes HOST:PORT"),
         (["export", "Drill", "--database", NO_DATABASE], "--database"),
         (["demo", "--url", "127.0.0.1:8000"], "--url takes an address"),
+        (["demo", "--url", "http://[::1"], "--url takes an address"),
+        (["demo", "--scenario", "picnic"], "--scenario is one of"),
+        (["serve", "--port", "0", "--data", "/dev/null"], "--data /dev/null cannot be used"),
+        (["import", "none.ndjson", "--incident", "Drill"], "none.ndjson cannot be used: No such file"),
+        (["import", "/dev/null", "--data", "/dev/null/here"], "--data /dev/null/here cannot be used"),
+        (["import", "/dev/null", "--level", "ground"], "a level is LEVEL:NAME:UP_M"),
+        (["convert", "plaza9", "."], "no data set 'plaza9'"),
+        (["convert", "plaza1", "."], "groundtruth.csv is missing"),
+        (["bench", "speed", "--only", "tea"], "no table 'tea'"),
     ],
 )
 def test_what_cannot_work_is_refused_in_a_line(words: list[str], said: str, tmp_path: Path) -> None:
     assert_refused(words, said, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("setting", "said"),
+    [
+        ("lag_s=x", "settings.lag_s: Input should be a valid number"),
+        ("lost_after_s=1", "settings: a node cannot be lost before it is stale"),
+    ],
+)
+def test_a_setting_that_cannot_be_is_refused_by_its_name(setting: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "log.ndjson").write_bytes(b'{"gateway":"g","batch":"1","readings":[]}\n')
+    assert_refused(["import", "log.ndjson", "--incident", "Drill", "--setting", setting], said, tmp_path)
+
+
+def test_a_file_that_is_cut_off_is_refused_by_its_line(tmp_path: Path) -> None:
+    (tmp_path / "log.ndjson").write_bytes(b'{"gateway":"g","batch":"1","rea')
+    line = assert_refused(["import", "log.ndjson", "--incident", "Drill"], "log.ndjson, line 1: ", tmp_path)
+    assert line.endswith("Input data was truncated. Nothing was imported.")
 
 
 def test_a_password_is_not_repeated(tmp_path: Path) -> None:
@@ -46,6 +74,12 @@ def test_a_password_is_not_repeated(tmp_path: Path) -> None:
 def test_the_demo_takes_a_token_and_makes_none(tmp_path: Path) -> None:
     assert_refused(["demo", "--data", str(tmp_path)], "no access token", tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("defect", [KeyError("ff1"), ValueError("no"), OSError("no"), TypeError("no")])
+def test_a_defect_of_ours_keeps_its_traceback(defect: Exception) -> None:
+    with pytest.raises(type(defect)), refusing():
+        raise defect
 
 
 def assert_refused(words: list[str], said: str, folder: Path) -> str:

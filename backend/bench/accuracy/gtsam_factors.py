@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from backend.bench.accuracy.least_squares import EXPONENT, P0_DBM, RANGE_SIGMA_M
+from backend.errors import CommandRefused
 from estimator.measurements import Range, Rssi
 
 STEP_M_PER_ROOT_M = 0.05
@@ -30,7 +31,7 @@ End = tuple[int, Offset]
 """One end of a reading: the pose's key, and the offset from it."""
 
 
-class GtsamMissing(ValueError):  # noqa: N818 - names the condition
+class GtsamMissing(CommandRefused):
     """GTSAM is not installed."""
 
 

@@ -18,6 +18,7 @@ from backend.bench.accuracy.gtsam_factors import GtsamMissing
 from backend.bench.accuracy.html import page
 from backend.bench.accuracy.judge import judge
 from backend.bench.accuracy.outcome import ABSENT, Outcome, Row, rows_of
+from backend.errors import CommandRefused, in_reach
 
 
 class Choice(NamedTuple):
@@ -62,7 +63,7 @@ def run(choice: Choice) -> None:
     """Measure, print the tables as they are ready, and write the report.
 
     Raises:
-        ValueError: a case or an entrant is not known, or GTSAM is asked for by name and not installed.
+        CommandRefused: a case or an entrant is not known, or GTSAM is asked for by name and not installed.
     """
     cases, left_out = _cases(choice)
     competing = _entrants(choice.trackers)
@@ -82,7 +83,8 @@ def run(choice: Choice) -> None:
         drawn += [outcome for outcome in all_of_it if outcome.seed == 0]
         print(text.table(case, of_case), flush=True)
     if choice.html is not None:
-        choice.html.write_text(page(rows, drawn, choice.seeds, left_out), encoding="utf-8")
+        with in_reach(choice.html):
+            choice.html.write_text(page(rows, drawn, choice.seeds, left_out), encoding="utf-8")
         print(f"report: {choice.html}")
 
 
@@ -141,7 +143,7 @@ def _cases(choice: Choice) -> tuple[list[str], list[str]]:
         return found, left_out
     for name in choice.only:
         if not any(name in (case, case.partition(":")[0]) for case in found):
-            raise ValueError(f"no case {name!r}; there are {', '.join(found)}")
+            raise CommandRefused(f"no case {name!r}; there are {', '.join(found)}")
     chosen = set(choice.only)
     return [case for case in found if chosen & {case, case.partition(":")[0]}], []
 
@@ -151,5 +153,5 @@ def _entrants(chosen: Sequence[str]) -> list[Entrant]:
     known = dict.fromkeys(entrant.name for entrant in found)
     for name in chosen:
         if name not in known:
-            raise ValueError(f"no entrant {name!r}; there are {', '.join(known)}")
+            raise CommandRefused(f"no entrant {name!r}; there are {', '.join(known)}")
     return [entrant for entrant in found if not chosen or entrant.name in chosen]

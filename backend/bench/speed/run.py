@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from backend.bench.speed import growth, real_time, same_graph, size, smoothed
+from backend.errors import CommandRefused
 
 TABLES: dict[str, Callable[[Path], None]] = {
     "same-graph": same_graph.run,
@@ -22,11 +23,11 @@ def run(only: Sequence[str], data: Path) -> None:
         data: the folder that holds the data sets' folders.
 
     Raises:
-        ValueError: a name is not known, or GTSAM is not installed.
+        CommandRefused: a name is not known, or GTSAM is not installed.
     """
     for name in only:
         if name not in TABLES and name not in same_graph.CASES:
-            raise ValueError(f"no table {name!r}; there are {', '.join((*TABLES, *same_graph.CASES))}")
+            raise CommandRefused(f"no table {name!r}; there are {', '.join((*TABLES, *same_graph.CASES))}")
     cases = [name for name in same_graph.CASES if name in only]
     if cases and "same-graph" not in only:
         same_graph.run(data, cases)

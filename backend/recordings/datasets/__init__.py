@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
+from backend.errors import CommandRefused
 from backend.recordings.datasets.base import NotTheDataSet, lines
 
 __all__ = ["NotTheDataSet", "convert", "converter_names"]
@@ -24,13 +25,13 @@ def convert(name: str, folder: Path) -> Iterator[bytes]:
         folder: the data set's folder.
 
     Raises:
-        KeyError: there is no such data set or recording.
+        CommandRefused: there is no such data set or recording.
         NotTheDataSet: the folder does not hold it.
     """
     data_set, _, recording = name.partition(":")
     module = _modules().get(data_set)
     if module is None or (recording and recording not in module.RECORDINGS):
-        raise KeyError(f"no data set {name!r}; there are {', '.join(converter_names())}")
+        raise CommandRefused(f"no data set {name!r}; there are {', '.join(converter_names())}")
     chosen = recording or next(iter(module.RECORDINGS), None)
     return lines(data_set, module.readings(folder, chosen))
 

@@ -7,6 +7,7 @@ from typing import TextIO
 
 import msgspec
 
+from backend.errors import CommandRefused, in_reach
 from estimator.measurements import AnyReading, Imu
 
 Vector3 = tuple[float, float, float]
@@ -15,7 +16,7 @@ KNOWN_SIGMA_M = 0.05
 """How well a position that the data set gives was surveyed, where it does not say."""
 
 
-class NotTheDataSet(Exception):  # noqa: N818 - names the condition
+class NotTheDataSet(CommandRefused):
     """The folder does not hold what the converter reads."""
 
 
@@ -116,7 +117,9 @@ def opened(path: Path) -> TextIO:
 
     Raises:
         NotTheDataSet: there is no such file.
+        CommandRefused: it cannot be read.
     """
     if not path.is_file():
         raise NotTheDataSet(f"{path} is missing: give the folder that holds {path.name}")
-    return path.open(encoding="utf-8", newline="")
+    with in_reach(path):
+        return path.open(encoding="utf-8", newline="")

@@ -11,6 +11,7 @@ import pytest
 
 from backend.demo import play, playing
 from backend.demo.client import Client, Refused
+from backend.errors import CommandRefused
 from estimator.simulate import scenario
 from tests.backend.demo.field_server import FieldServer
 
@@ -157,5 +158,5 @@ def test_a_refused_batch_ends_the_demo_with_the_servers_words(field_server: Fiel
 
 @pytest.mark.parametrize("speed", [0.0, -1.0, float("nan")])
 def test_a_speed_that_is_none_is_refused(speed: float) -> None:
-    with pytest.raises(ValueError, match="speed"):
+    with pytest.raises(CommandRefused, match="speed"):
         asyncio.run(play("http://127.0.0.1:9", None, "paper-a", 1, speed=speed))

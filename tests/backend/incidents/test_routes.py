@@ -141,6 +141,15 @@ def test_a_change_that_makes_no_sense_changes_nothing(
     assert client.get(address).json() == created
 
 
+def test_settings_that_contradict_those_that_stay_are_refused_by_name(
+    client: TestClient, created: dict[str, Any]
+) -> None:
+    change = {"settings": {"lost_after_s": 1}}
+    problem = client.patch(f"{INCIDENTS}/{created['id']}", json=change).json()
+    assert problem["errors"][0]["field"] == "body.settings"
+    assert problem["detail"].startswith("body.settings: a node cannot be lost before it is stale")
+
+
 def test_a_closed_incident_stays_closed(client: TestClient, created: dict[str, Any]) -> None:
     address = f"{INCIDENTS}/{created['id']}"
     closed = client.patch(address, json={"state": "closed"}).json()

@@ -3,6 +3,7 @@ from pathlib import Path
 import pytest
 import sqlalchemy as sa
 
+from backend.errors import CommandRefused
 from backend.log.base import LogUnreadable, LogUnwritable
 from backend.log.engine import make_engine, reading, writing
 
@@ -42,5 +43,5 @@ def test_a_database_that_cannot_be_reached_is_said_to_be_away(tmp_path: Path) ->
 
 
 def test_another_kind_of_database_is_refused() -> None:
-    with pytest.raises(ValueError, match="SQLite or Postgres"):
+    with pytest.raises(CommandRefused, match="SQLite or Postgres"):
         make_engine("mysql://127.0.0.1/x")

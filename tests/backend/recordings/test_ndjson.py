@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from backend.errors import Conflict, NotFound, NotUnderstood
+from backend.errors import CommandRefused, Conflict, NotFound, NotUnderstood
 from backend.log.base import LogUnwritable
 from backend.log.engine import make_engine
 from backend.log.incident import Level, Origin
@@ -193,11 +193,11 @@ def test_levels_and_origin_are_read_from_the_command_line() -> None:
 
 @pytest.mark.parametrize("text", ["", "1", "1:G", "x:G:0", "1:G:nan", "1::0", "1:G:0:0"])
 def test_a_level_of_another_form_is_refused_with_an_example(text: str) -> None:
-    with pytest.raises(ValueError, match="LEVEL:NAME:UP_M"):
+    with pytest.raises(CommandRefused, match="LEVEL:NAME:UP_M"):
         parse_level(text)
 
 
 @pytest.mark.parametrize("text", ["", "50,14", "91,0,0", "50;14;0", "a,b,c"])
 def test_an_origin_of_another_form_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match="LAT,LON,HAE"):
+    with pytest.raises(CommandRefused, match="LAT,LON,HAE"):
         parse_origin(text)

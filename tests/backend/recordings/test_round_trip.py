@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from backend.coordination.lease import Leases
-from backend.errors import NotUnderstood
+from backend.errors import CommandRefused, NotUnderstood
 from backend.live.frame import Frame
 from backend.live.past import frame_of, row_at
 from backend.log.append import append_group
@@ -172,5 +172,5 @@ def test_an_export_is_piped_into_an_import_without_a_word_more(tmp_path: Path) -
 
 @pytest.mark.parametrize("text", ["", "lag_s", "lag=5", "=5"])
 def test_a_setting_of_another_form_is_refused_with_those_that_there_are(text: str) -> None:
-    with pytest.raises(ValueError, match=r"NAME=VALUE.*lost_after_s"):
+    with pytest.raises(CommandRefused, match=r"NAME=VALUE.*lost_after_s"):
         parse_settings([text])

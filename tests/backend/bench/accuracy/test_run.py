@@ -9,6 +9,7 @@ from backend.bench.accuracy.cases import Case
 from backend.bench.accuracy.entrants import Entrant, Tracks
 from backend.bench.accuracy.outcome import ABSENT
 from backend.bench.accuracy.run import Choice, outcome_of, run
+from backend.errors import CommandRefused
 from estimator.estimate import TrackPoint
 from estimator.simulate import Report
 from tests.backend.bench.accuracy.short import NAME, build, true_track
@@ -49,7 +50,7 @@ def test_data_sets_that_are_not_there_are_named(tmp_path: Path, capsys: pytest.C
 
 @pytest.mark.parametrize("choice", [Choice(only=["nowhere"]), Choice(trackers=["nobody"])])
 def test_unknown_names_are_refused_with_those_there_are(choice: Choice, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="there are"):
+    with pytest.raises(CommandRefused, match="there are"):
         run(choice._replace(data=tmp_path))
 
 

@@ -10,6 +10,7 @@ from backend.bench.speed.growth import Span
 from backend.bench.speed.laps import UNTOLD_RAD, Laps
 from backend.bench.speed.race import race
 from backend.bench.speed.run import run
+from backend.errors import CommandRefused
 from estimator.measurements import Displacement, Node
 from tests.backend.bench.accuracy.short import NAME, build, true_track
 
@@ -87,5 +88,5 @@ def test_growth_measures_the_stretches_asked_for() -> None:
 
 
 def test_unknown_tables_are_refused_with_those_there_are() -> None:
-    with pytest.raises(ValueError, match=r"no table 'nothing'; there are same-graph, growth"):
+    with pytest.raises(CommandRefused, match=r"no table 'nothing'; there are same-graph, growth"):
         run(["nothing"], Path())

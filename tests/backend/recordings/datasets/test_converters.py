@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 import pytest
 
+from backend.errors import CommandRefused
 from backend.recordings import NotTheDataSet, convert, converter_names, import_log
 from backend.recordings.datasets.truth import truth_of
 from estimator.measurements import AnyReading, Displacement, Node, Range, Rssi
@@ -168,7 +169,7 @@ def test_a_converted_data_set_is_imported_whole(name: str, shared_data: Path, tm
 
 def test_an_unknown_data_set_is_answered_with_those_there_are(tmp_path: Path) -> None:
     for name in ("plaza2", "uwb_outdoor_hanyang:LOS_B1", "plaza1:x"):
-        with pytest.raises(KeyError, match="labyrinth_uwb"):
+        with pytest.raises(CommandRefused, match="labyrinth_uwb"):
             convert(name, tmp_path)
 
 
