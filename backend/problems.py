@@ -13,6 +13,7 @@ from starlette.websockets import WebSocket
 from backend.errors import (
     PROBLEM_MEDIA_TYPE,
     Conflict,
+    FieldError,
     Invalid,
     NotAllowed,
     NotAuthenticated,
@@ -117,6 +118,12 @@ def from_validation(faults: Sequence[dict[str, object]]) -> Problem:
                 "The body is not announced as JSON: send it with the content type application/json."
             )
     return Invalid.by_field(faults)
+
+
+def reversed_span() -> Invalid:
+    """The refusal of a span of time that ends before it begins."""
+    message = "`to` is before `from`: exchange them"
+    return Invalid(message, [FieldError(code="reversed", field="query.to", message=message)])
 
 
 def openapi_responses(*statuses: int) -> dict[int | str, dict[str, object]]:

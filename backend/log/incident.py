@@ -75,5 +75,8 @@ class Incident(Value):
     created: float = Field(description="Unix seconds")
     closed: float | None = Field(description="Unix seconds; null while it is active")
     last_seq: int = Field(ge=0, description="the newest entry of its log; 0 if it has none")
-    first_t: float | None = Field(description="first second that can be shown, Unix seconds; null if none")
+    first_t: float | None = Field(
+        description="first second that can be shown, Unix seconds; null if none. On a live clock none that "
+        "is more than 6 h before the first batch came, if there is another: a clock was wrong"
+    )
     last_t: float | None = Field(description="last second that can be shown, Unix seconds; null if none")

@@ -9,14 +9,26 @@ import sqlalchemy as sa
 from backend.errors import Conflict, NotFound
 from backend.log.engine import reading, writing
 from backend.log.incident import Clock, Incident, IncidentSettings, Level, Origin, State
-from backend.log.schema import frames, incidents
+from backend.log.schema import batches, frames, incidents
 
+HELD_BACK_S = 6 * 3600
+"""What a gateway held back is no older; what is older has a wrong clock, and says nothing of when."""
+
+_first_came = (
+    sa.select(sa.cast(batches.c.received, sa.BigInteger))
+    .where(batches.c.incident == incidents.c.id, batches.c.seq == 1)
+    .correlate(incidents)
+    .scalar_subquery()
+)
+_first = sa.select(sa.func.min(frames.c.second)).where(frames.c.incident == incidents.c.id)
+_first_trusted = _first.where(
+    frames.c.second >= sa.case((incidents.c.clock == "live", _first_came - HELD_BACK_S), else_=0)
+)
 _shown = sa.select(
     incidents,
-    sa.select(sa.func.min(frames.c.second))
-    .where(frames.c.incident == incidents.c.id)
-    .scalar_subquery()
-    .label("first_t"),
+    sa.func.coalesce(
+        _first_trusted.correlate(incidents).scalar_subquery(), _first.correlate(incidents).scalar_subquery()
+    ).label("first_t"),
     sa.select(sa.func.max(frames.c.second))
     .where(frames.c.incident == incidents.c.id)
     .scalar_subquery()

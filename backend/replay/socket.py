@@ -13,6 +13,7 @@ from backend.live.frame import ErrorMessage
 from backend.live.socket import NO_SUCH_INCIDENT, TRY_AGAIN_LATER
 from backend.log.base import LogReader
 from backend.log.incidents import IncidentStore
+from backend.problems import deny, reversed_span
 from backend.replay.clock import ReplayClock
 from backend.replay.control import FASTEST, LATEST_T, SLOWEST, understand
 from backend.replay.player import Player
@@ -43,20 +44,21 @@ def replay_router(incidents: IncidentStore, reader: LogReader) -> APIRouter:
         speed: Annotated[float, Query(ge=SLOWEST, le=FASTEST, allow_inf_nan=False)] = 1.0,
     ) -> None:
         """First a whole frame, then deltas and heartbeats, in incident time."""
+        if start is not None and to is not None and to < start:
+            await deny(socket, reversed_span())
+            return
         await socket.accept()
         try:
             known = await asyncio.to_thread(incidents.get, incident)
-            span = await asyncio.to_thread(reader.frame_span, incident)
         except NotFound as problem:
             await socket.close(NO_SUCH_INCIDENT, problem.title)
             return
         except Unavailable as problem:
             await socket.close(TRY_AGAIN_LATER, problem.title)
             return
-        first, last = span or (0, 0)
         clock = ReplayClock(
-            float(first) if start is None else start,
-            float(last) if to is None else to,
+            (known.first_t or 0.0) if start is None else start,
+            (known.last_t or 0.0) if to is None else to,
             speed,
             time.monotonic(),
         )

@@ -16,7 +16,7 @@ from backend.live.hub import Hub
 from backend.live.past import frame_of, row_at
 from backend.log.base import LogReader
 from backend.log.incidents import IncidentStore
-from backend.problems import openapi_responses
+from backend.problems import openapi_responses, reversed_span
 from backend.tracking.heads import head_of
 from backend.tracking.smoothing import Smoothing
 from backend.tracking.tracks import live_tracks, rounded
@@ -108,7 +108,10 @@ def tracking_router(
         node: Annotated[
             str | None, Query(min_length=1, max_length=64, description="only this one; all, without it")
         ] = None,
-        start: Annotated[float | None, moment("first second, Unix seconds", alias="from")] = None,
+        start: Annotated[
+            float | None,
+            moment("first second, Unix seconds; `first_t` without it", alias="from"),
+        ] = None,
         to: Annotated[float | None, moment("last second, Unix seconds")] = None,
         step: Annotated[int, Query(ge=1, le=3600, description="seconds from point to point")] = 1,
         view: Annotated[
@@ -120,9 +123,17 @@ def tracking_router(
         ] = None,
     ) -> Response:
         """Where the nodes were: as it was known then (`live`), or with everything known now (`smoothed`)."""
+        if start is not None and to is not None and to < start:
+            raise reversed_span()
         channel = await hub.channel(incident)
         if view == "live":
             await hub.stored(channel, LATEST_T if to is None else to)
+        known = await asyncio.to_thread(incidents.get, incident)
+        folded = channel.seq >= known.last_seq  # what is not may name any node
+        if node is not None and folded and all(one.node != node for one in channel.record.nodes):
+            raise NotFound(f"No reading of this incident has named {node!r}.")
+        start = known.first_t if start is None else start
+        if view == "live":
             newest = None
             if channel.record.t is not None and channel.record.t.is_integer():
                 newest = int(channel.record.t), channel.record

@@ -308,7 +308,7 @@ export interface components {
             last_seq: number;
             /**
              * First T
-             * @description first second that can be shown, Unix seconds; null if none
+             * @description first second that can be shown, Unix seconds; null if none. On a live clock none that is more than 6 h before the first batch came, if there is another: a clock was wrong
              */
             first_t: number | null;
             /**
@@ -1865,7 +1865,7 @@ export interface operations {
             query?: {
                 /** @description only this one; all, without it */
                 node?: string | null;
-                /** @description first second, Unix seconds */
+                /** @description first second, Unix seconds; `first_t` without it */
                 from?: number | null;
                 /** @description last second, Unix seconds */
                 to?: number | null;

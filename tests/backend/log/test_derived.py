@@ -1,12 +1,15 @@
 import pytest
 import sqlalchemy as sa
 
+from backend.log.append import append_group
 from backend.log.base import RecordedFrame, Snapshot, StaleEpoch
 from backend.log.derived import SqlDerivedWriter
 from backend.log.engine import writing
+from backend.log.incident import Clock
 from backend.log.incidents import IncidentStore
 from backend.log.read import BLOCK_ROWS, SqlLogReader
 from backend.log.schema import leases
+from tests.backend.log.batches import MakeBatch
 
 
 @pytest.fixture
@@ -64,6 +67,33 @@ def test_frames_are_read_over_any_span(engine: sa.Engine, held: str) -> None:
         2 * BLOCK_ROWS,
         2 * BLOCK_ROWS + 1,
     ]
+
+
+@pytest.mark.parametrize(
+    ("clock", "seconds", "first_t"),
+    [
+        (
+            "live",
+            [0, 5_000, 100_000, 100_001],
+            100_000.0,
+        ),  # units without a clock came first
+        ("live", [0, 85_000, 100_000], 85_000.0),  # a gateway had held back what it tells
+        ("live", [0, 1], 0.0),  # nobody has a clock: an exercise that counts from 0
+        ("recorded", [0, 100_000], 0.0),  # its time is that of its readings
+    ],
+)
+def test_a_wrong_clock_does_not_begin_a_live_incident(
+    engine: sa.Engine, store: IncidentStore, clock: Clock, seconds: list[int], first_t: float
+) -> None:
+    incident = store.create("a unit without a clock", clock).id
+    append_group(engine, [MakeBatch(incident)("1", received=100_000.5)])
+    with writing(engine) as connection:
+        connection.execute(
+            sa.insert(leases).values(incident=incident, holder="worker", epoch=3, expires=1e10)
+        )
+    SqlDerivedWriter(engine).save(incident, 3, [frame(second) for second in seconds], None)
+    assert store.get(incident).first_t == first_t
+    assert store.get(incident).last_t == seconds[-1]
 
 
 def test_an_incident_shows_the_span_of_its_frames(engine: sa.Engine, store: IncidentStore, held: str) -> None:

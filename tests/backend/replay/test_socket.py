@@ -1,7 +1,9 @@
 """The replay socket of a real server."""
 
 import itertools
+import time
 
+import msgspec
 import pytest
 from websockets.exceptions import ConnectionClosed
 
@@ -100,6 +102,27 @@ def test_an_unknown_incident_is_told_as_such(server: Server) -> None:
 @pytest.mark.parametrize("query", ["speed=0", "speed=1000", "from=NaN", "to=-1", "from=noon"])
 def test_a_wrong_parameter_opens_no_socket_and_is_named(server: Server, path: str, query: str) -> None:
     assert_refused(server, f"{path}?{query}", 422, f"query.{query.split('=', maxsplit=1)[0]}")
+
+
+def test_a_span_that_ends_before_it_begins_opens_no_socket(server: Server, path: str) -> None:
+    assert_refused(server, f"{path}?from={START_T + 9}&to={START_T}", 422, "`to` is before `from`")
+
+
+def test_a_replay_begins_where_the_incident_does_and_not_with_a_unit_that_has_no_clock(
+    server: Server, post: Post
+) -> None:
+    incident = post.open_incident("no clock", clock="live")
+    now = float(int(time.time()))
+    fix = {"kind": "position", "node": "ff1", "position_m": [1, 2, 0], "sigma_m": [1, 1, 1]}
+    for t in (0.0, now - 2.0, now - 1.0):
+        post.telemetry(incident, f"b{t}", [fix | {"t": t}])
+    eventually(lambda: post.http.get(f"/incidents/{incident}").json()["first_t"] == now - 2.0)
+    with watching(server.url, f"/incidents/{incident}/replay") as screen:
+        assert screen.hear()["t"] == now - 2.0
+    for view in ("live", "smoothed"):
+        track = msgspec.json.decode(post.tracks(incident, view=view))["tracks"][0]
+        assert track["points"][0][0] == now - 2.0
+    assert msgspec.json.decode(post.tracks(incident, **{"from": 0, "to": 9}))["tracks"][0]["points"]
 
 
 def test_an_incident_without_readings_can_be_replayed(server: Server, post: Post) -> None:

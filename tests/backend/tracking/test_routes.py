@@ -148,7 +148,6 @@ def test_a_track_may_be_cut_and_thinned(post: Post, walked: str) -> None:
     eventually(lambda: len(points(post, walked, "ff1")) >= SECONDS + 2)
     cut = points(post, walked, "ff1", **{"from": START_T + 3.5, "to": START_T + 12.5, "step": 4})
     assert [point[0] for point in cut] == [START_T + 4, START_T + 8, START_T + 12]
-    assert points(post, walked, "nobody") == []
 
 
 def test_a_point_of_a_live_track_is_what_the_frame_of_its_second_shows(post: Post, walked: str) -> None:
@@ -244,6 +243,7 @@ def test_the_relative_position_is_told_while_the_worker_is_away_and_after_closin
         ("tracks", {"from": "NaN"}),
         ("tracks", {"view": "guessed"}),
         ("tracks", {"node": ""}),
+        ("tracks", {"from": 9, "to": 8}),
         ("tracks", {"decimals": -1}),
     ],
 )
@@ -253,6 +253,19 @@ def test_parameters_outside_their_bounds_are_refused(
     status, problem = get(post, walked, what, **parameters)
     assert status == 422, problem
     assert problem["errors"]
+
+
+@pytest.mark.parametrize("view", ["live", "smoothed"])
+def test_a_track_of_a_node_that_nothing_has_named_is_not_found(post: Post, walked: str, view: str) -> None:
+    status, problem = get(post, walked, "tracks", node="nobody", view=view)
+    assert (status, problem["detail"]) == (404, "No reading of this incident has named 'nobody'.")
+
+
+def test_who_is_known_but_nowhere_has_no_track(post: Post) -> None:
+    incident = post.open_incident("somewhere")
+    post.telemetry(incident, "b1", [{"kind": "status", "t": 5.0, "node": "ff1", "battery": 0.5}])
+    post.frame(incident, min_seq=1)
+    assert get(post, incident, "tracks", node="ff1") == (200, {"tracks": []})
 
 
 @pytest.mark.parametrize("what", ["frame", "tracks", "relative?a=x&b=y"])
