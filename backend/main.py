@@ -33,7 +33,9 @@ from backend.tracking.routes import tracking_router
 from backend.tracking.smoothing import Smoothing
 
 
-def build_app(settings: Settings, *, token: str | None, link: socket.socket, link_token: str) -> FastAPI:
+def build_app(
+    settings: Settings, *, token: str | None, link: socket.socket, link_token: str, hold: int | None = None
+) -> FastAPI:
     """The application, its database brought up to date.
 
     Args:
@@ -41,6 +43,7 @@ def build_app(settings: Settings, *, token: str | None, link: socket.socket, lin
         token: the access token; None lets everybody in.
         link: listening socket where workers connect.
         link_token: what they must say.
+        hold: handle by which this process has the data folder to itself.
 
     Raises:
         SchemaTooNew: a newer version has written the database.
@@ -49,7 +52,7 @@ def build_app(settings: Settings, *, token: str | None, link: socket.socket, lin
     prepare(url)
     engine = make_engine(url)
     incidents, reader = IncidentStore(engine), SqlLogReader(engine)
-    writer = GroupCommit(url, settings.queue_bytes)
+    writer = GroupCommit(url, settings.queue_bytes, hold)
     workers = WebLink(link, link_token)
     hub = Hub(incidents, reader)
     workers.on_picture(hub.take)

@@ -6,6 +6,7 @@ import ipaddress
 import os
 import secrets
 import socket
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
@@ -72,12 +73,20 @@ def listen(host: str, port: int) -> socket.socket:
     return listener
 
 
+HANDED_OVER_WITHIN_S = 5.0
+"""The writer of a server that was killed first writes what came: a second or two where the disk is slow."""
+
+
 @contextmanager
-def held(folder: Path) -> Iterator[None]:
-    """Have a folder to this process alone, until it ends, however suddenly.
+def held(folder: Path, within_s: float = HANDED_OVER_WITHIN_S) -> Iterator[int]:
+    """Have a folder to this process alone, and to whom it gives the handle, until they end, however suddenly.
 
     Two servers on one SQLite database would both move its WAL into it, and pages may be lost by that: see
     `make_engine`.
+
+    Args:
+        folder: which.
+        within_s: how long another that has it is waited for (s).
 
     Raises:
         ConfigurationRefused: another server has it.
@@ -85,18 +94,30 @@ def held(folder: Path) -> Iterator[None]:
     with in_reach(folder):
         handle = os.open(folder, os.O_RDONLY)
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(handle)
-        raise ConfigurationRefused(
-            f"another firethread serves from {folder}: stop it, or give this one another --data"
-        ) from None
-    except OSError as error:  # some network file systems know no such locks
-        log.warning("the data folder cannot be held: see that no other server uses it", why=str(error))
-    try:
-        yield
+        if not _locked(handle, within_s):
+            raise ConfigurationRefused(
+                f"another firethread serves from {folder}: stop it, or give this one another --data"
+            )
+        yield handle
     finally:
         os.close(handle)
+
+
+def _locked(handle: int, within_s: float) -> bool:
+    """Whether a folder is this process's now: of a file system that knows no locks it is taken to be."""
+    until = time.monotonic() + within_s
+    while True:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            if time.monotonic() > until:
+                return False
+            time.sleep(0.05)
+        except OSError as error:
+            log.warning("the data folder cannot be held: see that no other server uses it", why=str(error))
+            return True
+        else:
+            return True
 
 
 def url_of(listener: socket.socket) -> str:
@@ -118,17 +139,17 @@ def serve(settings: Settings) -> None:
     raise_open_files()
     settings.make_folder()
     # On Postgres nothing under the folder is written but the token, once.
-    with held(settings.data) if settings.database is None else nullcontext():
-        _serve(settings)
+    with held(settings.data) if settings.database is None else nullcontext() as hold:
+        _serve(settings, hold)
 
 
-def _serve(settings: Settings) -> None:
+def _serve(settings: Settings, hold: int | None) -> None:
     listener, link = listen(settings.host, settings.port), listen(*host_and_port(settings.link))
     url = url_of(listener)
     link_token = os.environ.get(LINK_TOKEN_VARIABLE) or secrets.token_urlsafe(24)
     token = None if settings.open_access else access_token(settings.data)
     children = _children(settings, url, link, link_token)
-    app = build_app(settings, token=token, link=link, link_token=link_token)
+    app = build_app(settings, token=token, link=link, link_token=link_token, hold=hold)
     telemetry = app.state.telemetry
     config = uvicorn.Config(
         TelemetryFirst(app, telemetry, Authentication(telemetry.handle, token)),

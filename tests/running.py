@@ -89,10 +89,17 @@ class Server:
 
     def worker_pids(self) -> list[int]:
         """The estimator workers that run as children of the web process."""
+        return self._children(b"\0worker\0")
+
+    def writer_pids(self) -> list[int]:
+        """The log's writer, as a child of the web process."""
+        return self._children(b"\0backend.log.writer_process\0")
+
+    def _children(self, word: bytes) -> list[int]:
         assert self.process is not None
         children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children")
         pids = [int(pid) for pid in children.read_text().split()] if children.exists() else []
-        return [pid for pid in pids if b"\0worker\0" in Path(f"/proc/{pid}/cmdline").read_bytes()]
+        return [pid for pid in pids if word in Path(f"/proc/{pid}/cmdline").read_bytes()]
 
     def kill_worker(self) -> bool:
         """SIGKILL the worker, if one runs just now."""

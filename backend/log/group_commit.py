@@ -58,10 +58,13 @@ class GroupCommit:
     Args:
         url: of the log's database.
         queue_bytes: bodies that may wait before `TooBusy`.
+        hold: handle by which this process has the database to itself; the writer holds it as well, so that
+            it is given back once both have ended.
     """
 
-    def __init__(self, url: str, queue_bytes: int) -> None:
+    def __init__(self, url: str, queue_bytes: int, hold: int | None = None) -> None:
         self._url = url
+        self._hold = hold
         self._limit = queue_bytes
         self._bytes = 0
         self._waiting: deque[tuple[asyncio.Future[Appended], int]] = deque()
@@ -175,7 +178,7 @@ class GroupCommit:
         with theirs:
             process = subprocess.Popen(  # noqa: S603, ASYNC220 - our own module; starting it does not wait
                 [sys.executable, "-m", "backend.log.writer_process", str(theirs.fileno())],
-                pass_fds=[theirs.fileno()],
+                pass_fds=[theirs.fileno(), *([] if self._hold is None else [self._hold])],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
             )
