@@ -6,11 +6,10 @@ import msgspec
 from msgspec import Meta
 
 from backend.replay.clock import ReplayClock
+from estimator.measurements.base import EpochSeconds
 
 SLOWEST, FASTEST = 0.1, 64.0
-LATEST_T = 4_102_444_800.0
 
-Moment = Annotated[float, Meta(ge=0.0, le=LATEST_T)]
 Speed = Annotated[float, Meta(ge=SLOWEST, le=FASTEST)]
 
 
@@ -23,7 +22,7 @@ class Control(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         pause: stand still, or go on.
     """
 
-    seek: Moment | None = None
+    seek: EpochSeconds | None = None
     speed: Speed | None = None
     pause: bool | None = None
 

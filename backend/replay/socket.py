@@ -15,8 +15,9 @@ from backend.log.base import LogReader
 from backend.log.incidents import IncidentStore
 from backend.problems import deny, reversed_span
 from backend.replay.clock import ReplayClock
-from backend.replay.control import FASTEST, LATEST_T, SLOWEST, understand
+from backend.replay.control import FASTEST, SLOWEST, understand
 from backend.replay.player import Player
+from estimator.measurements.base import LATEST_T
 
 STEP_S = 0.1
 BEAT_S = 1.0

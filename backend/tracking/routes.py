@@ -21,9 +21,9 @@ from backend.tracking.heads import head_of
 from backend.tracking.smoothing import Smoothing
 from backend.tracking.tracks import live_tracks, rounded
 from estimator.estimate import Relative, TrackPoint
+from estimator.measurements.base import LATEST_T
 
 ASK_WITHIN_S = 5.0
-LATEST_T = 4_102_444_800.0
 
 
 def moment(description: str, alias: str | None = None) -> Any:

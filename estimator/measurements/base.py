@@ -8,7 +8,10 @@ from msgspec import Meta
 Identifier = Annotated[str, Meta(min_length=1, max_length=64, pattern=r"^[A-Za-z0-9_.:-]+\Z")]
 """A node, gateway, batch or technology: 1 to 64 of ``A-Za-z0-9_.:-``."""
 
-EpochSeconds = Annotated[float, Meta(ge=0.0, le=4_102_444_800.0)]
+LATEST_T = 4_102_444_800.0
+"""The year 2100, Unix seconds."""
+
+EpochSeconds = Annotated[float, Meta(ge=0.0, le=LATEST_T)]
 """Unix seconds, from 1970 to 2100: wide enough for recordings that count from zero."""
 
 LengthM = Annotated[float, Meta(ge=-100_000.0, le=100_000.0)]

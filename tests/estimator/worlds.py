@@ -25,12 +25,10 @@ class World(NamedTuple):
     Attributes:
         readings: in order of epoch.
         ways_m: of each responder, second by second, k × 2 (m).
-        dropped_m: where breadcrumbs were dropped (m).
     """
 
     readings: list[AnyReading]
     ways_m: dict[str, Array]
-    dropped_m: dict[str, Array]
 
 
 def world(seed: int) -> World:
@@ -61,7 +59,7 @@ def world(seed: int) -> World:
             readings += _heard(chance, second, who, way[second], radios | dropped, REACH_M)
             others = {other: at[second] for other, at in ways.items() if other > who}
             readings += _heard(chance, second, who, way[second], others, HEARD_M)
-    return World(readings, ways, dropped)
+    return World(readings, ways)
 
 
 def _node(name: str, at: Array, sigma_m: float) -> Node:

@@ -17,7 +17,6 @@ from tests.estimator.smoothing.windows import entered, fused, problem_of, unlike
 
 ANCHORS = {"north": (0.0, 30.0, 2.0), "east": (30.0, -5.0, 2.0), "west": (-25.0, -10.0, 2.0)}
 SECONDS, AT_S, RANGE_M = 120, 61, 0.1
-CENTRE = np.array([0.0, 5.0])
 
 
 def place(second: float) -> np.ndarray:

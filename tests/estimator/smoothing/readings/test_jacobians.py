@@ -169,14 +169,6 @@ def spread_row(rows: Rows, row: int, slopes: Array, problem: Problem) -> Array:
     return found
 
 
-def turns_of(problem: Problem) -> Array:
-    """Flat columns of the units' headings."""
-    layout = problem.layout
-    walks = [i for i, w in enumerate(layout.walks) if w.way is not None]
-    keyframes = np.arange(layout.length)[:, None] * layout.width
-    return np.asarray(keyframes + STATES * np.array(walks) + 3).ravel()
-
-
 @pytest.mark.parametrize("seed", range(4))
 def test_the_rows_of_a_window_change_with_its_unknowns_as_told(incident: Problem, seed: int) -> None:
     x = random_state(incident, seed)
