@@ -94,7 +94,7 @@ def build_app(
         incidents_router(incidents),
         log_router(reader, incidents),
         tracking_router(incidents, reader, hub, workers, smoothing),
-        evidence_router(incidents, smoothing),
+        evidence_router(incidents, reader, smoothing),
         live_router(hub),
         replay_router(incidents, reader),
         session_router(token),

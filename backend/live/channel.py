@@ -6,6 +6,7 @@ from typing import Protocol
 import msgspec
 
 from backend.live.frame import DeltaMessage, Frame, FrameMessage, FrameNotice, HeartbeatMessage, message
+from backend.live.past import told_at
 from backend.live.presentation import now_of, present
 from backend.live.push_protocol import text_frame
 from backend.live.record import EMPTY, PictureRecord, decode
@@ -163,7 +164,8 @@ class Channel:
         """
         if self.since_t is None or t < self.since_t:
             return None
-        return present(self.record, self.seq, t, self.incident)
+        told = told_at(self.incident, t) if self.incident.clock == "live" else self.incident
+        return present(self.record, self.seq, t, told)
 
     def show(self, server_t: float) -> None:
         """Present the picture anew, and give every screen what has changed."""

@@ -34,10 +34,30 @@ def record_of(row: RecordedFrame | None) -> PictureRecord:
     return EMPTY if row is None else decode(row.record)
 
 
+def told_at(incident: Incident, t: float, row: RecordedFrame | None = None) -> Incident:
+    """An incident as it was set at a moment: its origin, levels and settings of then.
+
+    Args:
+        incident: as it is known now.
+        t: the moment, Unix seconds; it tells in one with a `live` clock.
+        row: the newest that could be seen then; it tells where the readings are the clock.
+    """
+    told = incident.stretches[0]
+    for stretch in incident.stretches[1:]:
+        if incident.clock == "live":
+            begun = stretch.since <= t
+        else:
+            begun = row is not None and (stretch.after_seq, stretch.since) <= (row.seq, row.received)
+        if not begun:
+            break
+        told = stretch
+    return incident.set_to(told)
+
+
 def frame_of(row: RecordedFrame | None, incident: Incident, t: float) -> Frame:
     """The frame that a row is at a moment.
 
     Raises:
         UnknownRecord: another version wrote the row.
     """
-    return present(record_of(row), 0 if row is None else row.seq, t, incident)
+    return present(record_of(row), 0 if row is None else row.seq, t, told_at(incident, t, row))

@@ -100,6 +100,24 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True):
     made_with: str | None = None
 
 
+class LoggedStretch(msgspec.Struct, frozen=True, kw_only=True):
+    """What the estimator of an incident was told from one change of settings on.
+
+    Attributes:
+        number: it counts up by one from 0, what the incident was opened with.
+        after_seq: the newest log entry when it was set.
+        since: when it was set, Unix seconds.
+        settings: all of them, as JSON.
+        origin: of the local coordinates, as JSON; None: not known.
+    """
+
+    number: int
+    after_seq: int
+    since: float
+    settings: str
+    origin: str | None
+
+
 class StaleEpoch(Exception):  # noqa: N818 - names the condition, as the field does
     """A write under a lease that another worker has taken since."""
 
@@ -131,6 +149,12 @@ class LogReader(Protocol):
 
     def batches(self, incident: str, after: int = 0, limit: int | None = None) -> Iterator[LoggedBatch]:
         """Batches with `seq` > `after` in `seq` order, in one consistent read per fetched block."""
+
+    def stretches(self, incident: str, after: int = -1) -> list[LoggedStretch]:
+        """What the incident was set to, in order: those with `number` > `after`.
+
+        Read after entries of the log, they hold every change that was made before these came.
+        """
 
     def frame_at(self, incident: str, t: float, received_by: float | None = None) -> RecordedFrame | None:
         """The newest recorded frame with second ≤ `t` (and received ≤ `received_by`)."""

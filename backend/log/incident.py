@@ -62,6 +62,16 @@ class IncidentSettings(Value):
         return self
 
 
+class Stretch(Value):
+    """What an incident was set to, from one change of it until the next: an event of the incident."""
+
+    after_seq: int = Field(ge=0, description="the newest entry of its log when it was set")
+    since: float = Field(description="when it was set, Unix seconds")
+    origin: Origin | None
+    levels: list[Level]
+    settings: IncidentSettings
+
+
 class Incident(Value):
     """An incident as it is stored and shown."""
 
@@ -80,3 +90,12 @@ class Incident(Value):
         "is more than 6 h before the first batch came, if there is another: a clock was wrong"
     )
     last_t: float | None = Field(description="last second that can be shown, Unix seconds; null if none")
+    stretches: list[Stretch] = Field(
+        min_length=1,
+        description="what it was set to, and from when on: the first as it was opened, the last holds now",
+    )
+
+    def set_to(self, stretch: Stretch) -> Self:
+        """The incident as it was in a stretch of its own."""
+        was = {"origin": stretch.origin, "levels": stretch.levels, "settings": stretch.settings}
+        return self.model_copy(update=was)

@@ -2,14 +2,15 @@
 
 import secrets
 import time
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import sqlalchemy as sa
 
 from backend.errors import Conflict, NotFound
 from backend.log.engine import reading, writing
-from backend.log.incident import Clock, Incident, IncidentSettings, Level, Origin, State
-from backend.log.schema import batches, frames, incidents
+from backend.log.incident import Clock, Incident, IncidentSettings, Level, Origin, State, Stretch
+from backend.log.schema import batches, frames, incidents, stretches
 
 HELD_BACK_S = 6 * 3600
 """What a gateway held back is no older; what is older has a wrong clock, and says nothing of when."""
@@ -34,6 +35,7 @@ _shown = sa.select(
     .scalar_subquery()
     .label("last_t"),
 )
+_stretches = sa.select(stretches).order_by(stretches.c.incident, stretches.c.number)
 _BASE32 = "0123456789abcdefghjkmnpqrstvwxyz"
 _RANDOM_BITS = 28
 
@@ -65,24 +67,32 @@ class IncidentStore:
     ) -> Incident:
         """Store a new, active incident; `created` (Unix seconds) is now, unless it was opened elsewhere."""
         now = time.time()
+        opened = Stretch(
+            after_seq=0,
+            since=now if created is None else created,
+            origin=origin,
+            levels=levels or [],
+            settings=settings or IncidentSettings(),
+        )
         incident = Incident(
             id=new_incident_id(now),
             name=name,
             clock=clock,
             state="active",
-            origin=origin,
-            levels=levels or [],
-            settings=settings or IncidentSettings(),
-            created=now if created is None else created,
+            origin=opened.origin,
+            levels=opened.levels,
+            settings=opened.settings,
+            created=opened.since,
             closed=None,
             last_seq=0,
             first_t=None,
             last_t=None,
+            stretches=[opened],
         )
         with writing(self._engine) as connection:
-            connection.execute(
-                sa.insert(incidents).values(incident.model_dump(exclude={"first_t", "last_t"}))
-            )
+            values = incident.model_dump(exclude={"first_t", "last_t", "stretches"})
+            connection.execute(sa.insert(incidents).values(values))
+            _begin(connection, incident.id, 0, opened)
         return incident
 
     def get(self, incident: str) -> Incident:
@@ -100,15 +110,17 @@ class IncidentStore:
         if state is not None:
             query = query.where(incidents.c.state == state)
         with reading(self._engine) as connection:
-            return [_incident(row) for row in connection.execute(query)]
+            rows = connection.execute(query).all()
+            return list(_incidents(rows, connection.execute(_stretches)))
 
     def change(self, incident: str, changes: dict[str, Any]) -> Incident:
-        """Change an incident.
+        """Change an incident; another origin, levels or settings begin a new stretch of it.
 
         Args:
             incident: its id.
             changes: new values of `name`, `origin`, `levels`, `settings`, `state` (plain data); settings that
-                are not named keep their value. `closed` (Unix seconds): when that was, unless it is now.
+                are not named keep their value. `closed`, `since` (Unix seconds): when it was closed, or set,
+                unless it is now.
 
         Raises:
             pydantic.ValidationError: the settings contradict those that stay.
@@ -128,9 +140,23 @@ class IncidentStore:
             if "settings" in changes:
                 merged = before.settings.model_dump() | changes["settings"]
                 changes = changes | {"settings": IncidentSettings.model_validate(merged).model_dump()}
-            if changes:
-                connection.execute(sa.update(incidents).where(incidents.c.id == incident).values(changes))
-            return _one(connection, _shown, incident)
+            # No stretch begins before the one that it ends, whatever has become of the clock.
+            since = max(changes.get("since", time.time()), before.stretches[-1].since)
+            values = {name: value for name, value in changes.items() if name != "since"}
+            if values:
+                connection.execute(sa.update(incidents).where(incidents.c.id == incident).values(values))
+            after = _one(connection, _shown, incident)
+            told = Stretch(
+                after_seq=after.last_seq,
+                since=since,
+                origin=after.origin,
+                levels=after.levels,
+                settings=after.settings,
+            )
+            if after.set_to(after.stretches[-1]) == after:
+                return after
+            _begin(connection, incident, len(after.stretches), told)
+            return after.model_copy(update={"stretches": [*after.stretches, told]})
 
 
 def _one(connection: sa.Connection, query: sa.Select[Any], incident: str) -> Incident:
@@ -138,8 +164,21 @@ def _one(connection: sa.Connection, query: sa.Select[Any], incident: str) -> Inc
     row = None if "\x00" in incident else connection.execute(query.where(incidents.c.id == incident)).first()
     if row is None:
         raise NotFound(f"There is no incident {incident!r}: GET /api/v1/incidents lists them.")
-    return _incident(row)
+    told = connection.execute(_stretches.where(stretches.c.incident == incident))
+    return next(_incidents([row], told))
 
 
-def _incident(row: sa.Row[Any]) -> Incident:
-    return Incident.model_validate(row._asdict())
+def _incidents(rows: Iterable[sa.Row[Any]], told: Iterable[sa.Row[Any]]) -> Iterator[Incident]:
+    """Incidents from their rows, and those of all their stretches in order."""
+    of: dict[str, list[dict[str, Any]]] = {}
+    for one in told:
+        values = one._asdict()
+        del values["number"]
+        of.setdefault(values.pop("incident"), []).append(values)
+    for row in rows:
+        yield Incident.model_validate(row._asdict() | {"stretches": of[row.id]})
+
+
+def _begin(connection: sa.Connection, incident: str, number: int, stretch: Stretch) -> None:
+    values = stretch.model_dump() | {"incident": incident, "number": number}
+    connection.execute(sa.insert(stretches).values(values))

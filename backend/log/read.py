@@ -6,9 +6,9 @@ from typing import Any
 import sqlalchemy as sa
 
 from backend.log.append import decode_rejected
-from backend.log.base import LoggedBatch, RecordedFrame, Snapshot
+from backend.log.base import LoggedBatch, LoggedStretch, RecordedFrame, Snapshot
 from backend.log.engine import reading
-from backend.log.schema import batches, frames, snapshots
+from backend.log.schema import batches, frames, snapshots, stretches
 
 BLOCK_ROWS = 512
 BLOCK_BYTES = 4 * 1024 * 1024
@@ -27,6 +27,18 @@ _batches_after = (
     .where(batches.c.incident == sa.bindparam("incident"), batches.c.seq > sa.bindparam("after"))
     .order_by(batches.c.seq)
     .limit(sa.bindparam("rows"))
+)
+
+_stretches_after = (
+    sa.select(
+        stretches.c.number,
+        stretches.c.after_seq,
+        stretches.c.since,
+        sa.type_coerce(stretches.c.settings, sa.Text).label("settings"),
+        sa.type_coerce(stretches.c.origin, sa.Text).label("origin"),
+    )
+    .where(stretches.c.incident == sa.bindparam("incident"), stretches.c.number > sa.bindparam("after"))
+    .order_by(stretches.c.number)
 )
 
 
@@ -83,6 +95,12 @@ class SqlLogReader:
                     )
             result.close()
         return block, len(block) < rows and size < BLOCK_BYTES
+
+    def stretches(self, incident: str, after: int = -1) -> list[LoggedStretch]:
+        """What the incident was set to, in order: those with `number` > `after`."""
+        with reading(self._engine) as connection:
+            rows = connection.execute(_stretches_after, {"incident": incident, "after": after}).all()
+        return [LoggedStretch(**row._asdict()) for row in rows]
 
     def frame_at(self, incident: str, t: float, received_by: float | None = None) -> RecordedFrame | None:
         """The newest recorded frame with second ≤ `t` (and received ≤ `received_by`)."""

@@ -44,6 +44,18 @@ incidents = sa.Table(
     sa.Column("last_seq", sa.BigInteger, nullable=False),
 )
 
+stretches = sa.Table(
+    "stretches",
+    metadata,
+    sa.Column("incident", sa.Text, primary_key=True),
+    sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
+    sa.Column("after_seq", sa.BigInteger, nullable=False),
+    sa.Column("since", sa.Double, nullable=False),
+    sa.Column("origin", JsonText),
+    sa.Column("levels", JsonText, nullable=False),
+    sa.Column("settings", JsonText, nullable=False),
+)
+
 batches = sa.Table(
     "batches",
     metadata,

@@ -5,7 +5,7 @@ The first line of an export says of which incident it is, where that is not what
 
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import NamedTemporaryFile
@@ -19,7 +19,7 @@ from backend.log.append import append_group
 from backend.log.base import NewBatch
 from backend.log.decode import judge
 from backend.log.engine import make_engine
-from backend.log.incident import Clock, Incident, IncidentSettings, Level, Origin
+from backend.log.incident import Clock, Incident, Level, Origin, Stretch
 from backend.log.incidents import IncidentStore
 from backend.log.lines import Line, log_line, parse_line
 from backend.log.migrate import prepare
@@ -33,6 +33,9 @@ STANDARD_INPUT = Path("-")
 
 GROUP_BATCHES = 256
 GROUP_BYTES = 8 * 1024 * 1024
+
+Numbered = tuple[int, NewBatch]
+"""A batch with the `seq` of its line in a file."""
 
 Progress = Callable[[int, int], None]
 """Called with the lines written so far and all lines of the file."""
@@ -82,7 +85,8 @@ def import_log(
     have come when it was sent, or at its newest reading; `seq` counts the lines anew. Readings are judged as
     ingest judges them; those that the line itself lists as rejected stay so.
 
-    What is given here goes before what the file says of its incident; what neither says has its default.
+    What is given here goes before what the file says of its incident, at all times; what neither says has its
+    default. What was set under way is set after the same line.
 
     Args:
         url: SQLAlchemy URL of the log's database; it is created or migrated where needed.
@@ -105,11 +109,11 @@ def import_log(
     """
     with _readable_twice(path) as (file, said):
         known = _about(file, said)
-        given = {"name": name, "clock": clock, "levels": levels, "origin": origin}
+        given = {"name": name, "clock": clock}
         known = known.model_copy(update={field: value for field, value in given.items() if value is not None})
+        known = known.with_options(levels, origin, settings or {})
         if known.name is None:
             raise NotUnderstood(f"{said} does not say the name of its incident: give it one by --incident.")
-        merged = _merged(known.settings, settings or {})
         total = sum(1 for _ in batches_in(file, "", known.clock, said))
         if total == 0:
             raise NotUnderstood(f"{said} holds no batch: an export of an incident has a line for each.")
@@ -118,14 +122,18 @@ def import_log(
         try:
             store = IncidentStore(engine)
             incident = store.create(
-                known.name, known.clock, known.origin, known.levels, merged, known.created
+                known.name, known.clock, known.origin, known.levels, known.settings, known.created
             ).id
-            imported, written = Imported(incident=incident), 0
-            for group in _groups(batches_in(file, incident, known.clock, said)):
-                imported = imported.plus(_append(engine, group))
+            imported, written, coming = Imported(incident=incident), 0, list(known.changes)
+            for group in _groups(batches_in(file, incident, known.clock, said), known.changes):
+                while coming and coming[0].after_seq < group[0][0]:
+                    _set(store, incident, coming.pop(0))
+                imported = imported.plus(_append(engine, [batch for _, batch in group]))
                 written += len(group)
                 if progress is not None:
                     progress(written, total)
+            for change in coming:
+                _set(store, incident, change)
             if known.closed is not None:
                 store.change(incident, {"state": "closed", "closed": known.closed})
             return imported
@@ -185,8 +193,12 @@ def find_incident(store: IncidentStore, name: str) -> Incident:
     raise NotFound(f"{what}: give one of these ids: {listed}.")
 
 
-def batches_in(path: Path, incident: str, clock: Clock, said: str) -> Iterator[NewBatch]:
-    """The lines of a file as batches of `incident`; empty lines are left out.
+def _set(store: IncidentStore, incident: str, change: Stretch) -> None:
+    store.change(incident, change.model_dump(exclude={"after_seq"}))
+
+
+def batches_in(path: Path, incident: str, clock: Clock, said: str) -> Iterator[Numbered]:
+    """The lines of a file as batches of `incident`, each with its `seq` there; empty lines are left out.
 
     Args:
         path: of the file.
@@ -199,17 +211,15 @@ def batches_in(path: Path, incident: str, clock: Clock, said: str) -> Iterator[N
         TooLarge: a line has more readings than a batch may have.
         CommandRefused: the file cannot be read.
     """
-    begun = False
-    for number, line in _lines(path, said):
-        if begun and line.incident is not None:
+    for count, (number, line) in enumerate(_lines(path, said), start=1):
+        if count > 1 and line.incident is not None:
             raise NotUnderstood(
                 f"{said}, line {number}: another incident begins here, and each has a file of its own. "
                 "Nothing was imported."
             )
-        begun = True
         with _naming(said, number):
             batch = _new_batch(line, incident, clock)
-        yield batch
+        yield count if line.seq is None else line.seq, batch
 
 
 def _about(path: Path, said: str) -> About:
@@ -218,14 +228,6 @@ def _about(path: Path, said: str) -> About:
         with _naming(said, number):
             return understood(line.incident)
     return understood(None)
-
-
-def _merged(settings: IncidentSettings, given: dict[str, object]) -> IncidentSettings:
-    """Settings, with those that are given in their places."""
-    try:
-        return IncidentSettings.model_validate(settings.model_dump() | given)
-    except ValidationError as error:
-        raise Invalid.by_field(error.errors(), ("settings",)) from error
 
 
 def _lines(path: Path, said: str) -> Iterator[tuple[int, Line]]:
@@ -268,12 +270,16 @@ def _new_batch(line: Line, incident: str, clock: Clock) -> NewBatch:
     )
 
 
-def _groups(batches: Iterator[NewBatch]) -> Iterator[list[NewBatch]]:
-    """Batches in groups of a size that one transaction holds well."""
-    group: list[NewBatch] = []
+def _groups(batches: Iterator[Numbered], changes: Sequence[Stretch]) -> Iterator[list[Numbered]]:
+    """Batches in groups of a size that one transaction holds well, and between which settings changed."""
+    ends = [change.after_seq for change in changes]
+    group: list[Numbered] = []
     size = 0
-    for batch in batches:
-        group.append(batch)
+    for seq, batch in batches:
+        if group and any(group[-1][0] <= end < seq for end in ends):
+            yield group
+            group, size = [], 0
+        group.append((seq, batch))
         size += len(batch.body)
         if len(group) >= GROUP_BATCHES or size >= GROUP_BYTES:
             yield group

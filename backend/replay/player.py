@@ -1,7 +1,7 @@
 """One replay: the messages that show the past as it was shown then."""
 
 from backend.live.frame import DeltaMessage, Frame, FrameMessage, HeartbeatMessage, message
-from backend.live.past import record_of, row_at
+from backend.live.past import record_of, row_at, told_at
 from backend.live.presentation import present
 from backend.live.record import EMPTY
 from backend.log.base import LogReader, RecordedFrame
@@ -66,7 +66,8 @@ class Player:
         row = row_at(self._reader, self._incident, t)
         if row is None or self._row is None or (row.second, row.seq) != (self._row.second, self._row.seq):
             self._row, self._record = row, record_of(row)
-        return present(self._record, 0 if row is None else row.seq, t, self._incident)
+        told = told_at(self._incident, t, row)
+        return present(self._record, 0 if row is None else row.seq, t, told)
 
     def beat(self, wall_s: float) -> HeartbeatMessage:
         """A sign of life, with where the replay is."""

@@ -8,6 +8,8 @@ from fastapi import APIRouter
 from starlette.responses import Response
 
 from backend.errors import Conflict
+from backend.live.past import row_at, told_at
+from backend.log.base import LogReader
 from backend.log.incidents import IncidentStore
 from backend.tracking.heads import head_of
 from backend.tracking.routes import NodeName, answers_with, as_json, moment
@@ -15,11 +17,12 @@ from backend.tracking.smoothing import Smoothing
 from estimator.evidence import Advice, Evidence
 
 
-def evidence_router(incidents: IncidentStore, smoothing: Smoothing) -> APIRouter:
+def evidence_router(incidents: IncidentStore, reader: LogReader, smoothing: Smoothing) -> APIRouter:
     """The routes.
 
     Args:
         incidents: their settings.
+        reader: of the recorded rows.
         smoothing: weighs whole incidents.
     """
     router = APIRouter(prefix="/api/v1/incidents/{incident}", tags=["picture"])
@@ -33,9 +36,12 @@ def evidence_router(incidents: IncidentStore, smoothing: Smoothing) -> APIRouter
         """Which measurements hold a node's fix where it is, and which were rejected.
 
         It is what the whole log says now of everything up to `t` (without it: up to the newest epoch). An
-        entry that came later than `t` but tells of epochs before it counts.
+        entry that came later than `t` but tells of epochs before it counts. Settings and origin are those
+        of then.
         """
         known = await asyncio.to_thread(incidents.get, incident)
+        if t is not None:
+            known = told_at(known, t, await asyncio.to_thread(row_at, reader, known, t))
         found = await smoothing.evidence(head_of(known), node, t)
         if found is None:
             when = "yet" if t is None else "at that time"

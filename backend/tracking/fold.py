@@ -124,18 +124,16 @@ class IncidentFold:
         self._asked = self._tracker
         known_t = batch.received if self._live else math.inf
         readings = _alarms_heard(readings, batch.received if self._live else batch.sent)
-        second = self._second
-        if self._live and readings and second is not None and self._stood_long(second, batch.received):
+        if readings and (stood := self.stands(batch.received)) is not None:
             # The second may go on in what comes now, and would be recorded as of when that came.
-            self.stood, self.begun = second, batch.received
-            yield self._made(second)
+            yield stood
         for piece in pieces(readings, self.newest_t, known_t):
-            row = None
-            if piece.row is not None and (self.stood is None or piece.row > self.stood):
-                row = self._made(piece.row)
+            row, second = None, self._second
+            if second is not None and piece.newest_t > second:
+                row = self._made(second)
             self._tracker.fold(piece.readings, known_t)
             self._board.fold(piece.readings, known_t)
-            second, self.newest_t = self._second, piece.newest_t
+            self.newest_t = piece.newest_t
             if self._second != second:
                 self.begun = batch.received
             self._picture = None
@@ -147,6 +145,26 @@ class IncidentFold:
             self._picture = None
         self.seq = batch.seq
         self.whole = True
+
+    def stands(self, until: float) -> RecordedFrame | None:
+        """The row of what stood on the screens until a moment (Unix s) at which it is told otherwise."""
+        second = self._second
+        if not self._live or second is None or not self._stood_long(second, until):
+            return None
+        self.stood, self.begun = second, until
+        self._asked = self._tracker
+        return self._made(second)
+
+    def take_over(self, before: Self | None, since: float) -> None:
+        """Go on where another fold of the same entries stands, which was told otherwise.
+
+        Args:
+            before: the other; None: it could not go on.
+            since: the moment from which on what this one makes of them is known, Unix seconds.
+        """
+        if before is not None:
+            self.stood, self.begun = before.stood, before.begun
+        self.received = max(self.received, since)
 
     def _stood_long(self, second: int, received: float) -> bool:
         return received > max(second, self.begun) + STOOD_S

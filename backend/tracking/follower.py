@@ -3,7 +3,7 @@
 import asyncio
 import contextlib
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from typing import ParamSpec, TypeVar
 
@@ -11,21 +11,17 @@ import structlog
 
 from backend.coordination.base import Answer, Query
 from backend.coordination.lease import Leases
+from backend.errors import Unavailable
 from backend.live import record
 from backend.live.record import PictureRecord
 from backend.log.base import DerivedWriter, LogReader, LogUnreadable, Snapshot
 from backend.tracking.answering import answer
-from backend.tracking.fold import IncidentFold, OtherState
+from backend.tracking.course import Course, Step
+from backend.tracking.fold import IncidentFold
 from backend.tracking.heads import Head
 from backend.tracking.keeping import Keeper
 from backend.tracking.publication import Publication, Publish
-from backend.tracking.reading import Decoded, read_block
-
-SLICE_S = 0.02
-"""Folding goes on for so long, to the end of a log entry, before other incidents have their turn."""
-
-LONGEST_SLICE_S = 0.1
-"""Within an entry of thousands of readings, others have their turn after so long."""
+from backend.tracking.turns import for_a_while
 
 IDLE_S = 2.0
 """After so long without news the state is stored, and what was folded in a hurry is told without one."""
@@ -79,7 +75,7 @@ class Follower:
         self._news = asyncio.Event()
         self._news_seq = head.last_seq
         self._stopping = asyncio.Event()
-        self._fold: IncidentFold
+        self._course: Course
         self._keeper: Keeper
         self._storing: asyncio.Task[bool] | None = None
         self._in_use = asyncio.Lock()
@@ -91,10 +87,10 @@ class Follower:
             self._news.set()
 
     def hear_of(self, head: Head) -> bool:
-        """The incident as newly known; False if its estimator's settings are others now: it begins anew."""
-        if (head.tracker, head.settings) != (self._head.tracker, self._head.settings):
+        """The incident as newly known; False if its estimator failed, and is told otherwise: begin anew."""
+        if self.failed and head.stretch > self._course.made_with.stretch:
             return False
-        if head.closed != self._head.closed:
+        if head.closed != self._head.closed or head.stretch != self._head.stretch:
             self._news.set()
         self._head = head
         self.hear(head.last_seq)
@@ -124,8 +120,8 @@ class Follower:
         self.epoch = await asyncio.to_thread(self._leases.acquire, self._head.incident)
         if self.epoch is None:
             return
-        self._fold, settled = await self._restore()
-        self._keeper = Keeper(self._writer, self._head.incident, self.epoch, settled, self._fold.seq)
+        self._course, settled = await self._restore()
+        self._keeper = Keeper(self._writer, self._head.incident, self.epoch, settled, self._course.at)
         try:
             await self._follow()
         except _EstimatorFailed:
@@ -139,9 +135,19 @@ class Follower:
 
     async def ask(self, query: Query) -> Answer:
         """The answer to a question about two nodes."""
-        if not hasattr(self, "_fold"):
+        if not hasattr(self, "_course"):
             return Answer(query.number, found=False, followed=False)
         return await self._in_compute(answer, self._fold, query)
+
+    @property
+    def _fold(self) -> IncidentFold:
+        return self._course.fold
+
+    @property
+    def _behind(self) -> bool:
+        """Something is to be folded, by all that was heard."""
+        seq, stretch = self._course.at
+        return self._news_seq > seq or self._head.stretch > stretch
 
     async def _follow(self) -> None:
         heard_at = time.monotonic()
@@ -151,7 +157,7 @@ class Follower:
                 heard_at = time.monotonic()
             await self._show()
             quiet_s = time.monotonic() - heard_at
-            behind = self._news_seq > self._fold.seq
+            behind = self._behind
             if not behind and self._publication.lacks(self._fold.seq):
                 await self._estimate(self._fold.prepare)
             at_end = not behind and (self._head.closed or quiet_s >= LEAVE_S)
@@ -176,63 +182,63 @@ class Follower:
 
         Raises:
             _EstimatorFailed: the tracker could not.
+            LogUnreadable: the database failed while the log was folded anew.
         """
         try:
             return await self._in_compute(function, *args, **kwargs)
+        except Unavailable:
+            raise
         except Exception as error:
             raise _EstimatorFailed from error
 
-    async def _restore(self) -> tuple[IncidentFold, int | None]:
-        """The fold as it was stored, or a new one; and up to which second rows stay as they were shown."""
-        head = self._head
-        span = await asyncio.to_thread(self._reader.frame_span, head.incident)
-        settled = None if span is None else span[1]
-        snapshot = await asyncio.to_thread(self._reader.snapshot, head.incident)
-        told = head.tracker, head.settings, head.live
-        if snapshot is not None:
-            try:
-                return await self._in_compute(IncidentFold.restore, snapshot.state, *told), settled
-            except OtherState as why:
-                log.warning("the log is folded from its start", incident=head.incident, why=str(why))
-        return await self._in_compute(IncidentFold, *told), settled
+    async def _restore(self) -> tuple[Course, int | None]:
+        """The course as it was stored, or from the start; and up to which second rows stay as shown."""
+        incident, live = self._head.incident, self._head.live
+        span = await asyncio.to_thread(self._reader.frame_span, incident)
+        snapshot = await asyncio.to_thread(self._reader.snapshot, incident)
+        course = await self._in_compute(Course.begin, self._reader, incident, live, snapshot)
+        return course, None if span is None else span[1]
 
     async def _advance(self) -> bool:
         """Fold one block of the log, if there is one and what waits to be stored leaves room."""
-        if self._news_seq <= self._fold.seq or self._keeper.full:
+        if not self._behind or self._keeper.full:
             return False
+        before = self._course.at
         try:
-            block = await asyncio.to_thread(read_block, self._reader, self._head.incident, self._fold.seq)
+            block = await asyncio.to_thread(self._course.read)
         except LogUnreadable as error:
             log.warning("the log cannot be read", incident=self._head.incident, error=str(error))
             await asyncio.sleep(RETRY_S)
             return False
-        work = self._folding(block)
-        while await self._estimate(_for_a_while, work):
+        work = self._folding(self._course.steps(block))
+        while await self._estimate(for_a_while, work):
             await self._show()
             await self._keep(caught_up=False)
+            if self._course.passing and self._stopping.is_set():
+                return False  # the whole log may be folded anew: whoever goes on begins that again
         if not block:
             self._news_seq = self._fold.seq  # what was heard of is not there: the next poll tells
-        return bool(block)
+        if self._course.at[1] != before[1]:
+            self._publication.again()
+        return self._course.at != before
 
-    def _folding(self, block: Iterable[Decoded]) -> Iterator[bool]:
-        """Fold entries; after each piece, tell whether its entry is folded whole."""
-        for batch, readings in block:
-            for row in self._fold.fold(batch, readings):
-                if row is not None:
-                    self._keeper.take(row)
-                yield False
-            yield True
+    def _folding(self, steps: Iterator[Step]) -> Iterator[bool]:
+        """Fold; after each step, tell whether what was begun is folded whole."""
+        for row, whole in steps:
+            if row is not None:
+                self._keeper.take(row)
+            yield whole
 
     async def _show(self, *, last: bool = False) -> None:
         """Publish the picture if it is new and the last one was long enough ago, or no other will follow."""
-        seq = self._fold.seq
-        if not self._fold.whole or not self._publication.lacks(seq):
+        fold = self._fold
+        if self._course.passing or not fold.whole or not self._publication.lacks(fold.seq):
             return
         if self._publication.due_s() > 0 and not last:
             return
         self._publication.begin()
         picture, encoded = await self._estimate(self._encoded)
-        self._publication.show(seq, self._fold.row, self._fold.since_t, picture, encoded)
+        self._publication.show(fold.seq, fold.row, fold.since_t, picture, encoded)
 
     def _encoded(self) -> tuple[PictureRecord, bytes]:
         picture = self._fold.picture()
@@ -252,7 +258,7 @@ class Follower:
         if not self._fold.whole or self._keeper.rests_s(soon=caught_up) > 0:
             return
         snapshot = None
-        if self._keeper.wants_snapshot(self._fold.seq, idle=idle and caught_up):
+        if not self._course.passing and self._keeper.wants_snapshot(self._course.at, idle=idle and caught_up):
             snapshot = await self._estimate(self._snapshot)
         if snapshot is not None or not self._keeper.empty:
             self._storing = asyncio.create_task(self._keeper.save(snapshot))
@@ -261,21 +267,21 @@ class Follower:
 
     def _snapshot(self) -> Snapshot:
         """The state, and the row of the current second with it: the rows then hold all that is known."""
-        row = self._fold.last_row()
+        fold, made_with = self._fold, self._course.made_with
+        row = fold.last_row()
         if row is not None:
             self._keeper.take(row)
-        return Snapshot(
-            seq=self._fold.seq, state=self._fold.state(), made_with=self._head.made_with.encoded()
-        )
+        return Snapshot(seq=fold.seq, state=fold.state(), made_with=made_with.encoded())
 
     async def _settle(self) -> bool:
         """Store everything now; False where the database cannot be written."""
         if self._storing is not None:
             await self._storing
             self._storing = None
-        if self._keeper.snapshot_seq == self._fold.seq and self._keeper.empty:
+        if self._keeper.snapshot_at == self._course.at and self._keeper.empty:
             return True
-        return await self._keeper.save(await self._estimate(self._snapshot))
+        snapshot = None if self._course.passing else await self._estimate(self._snapshot)
+        return await self._keeper.save(snapshot)
 
     async def _rest(self) -> None:
         """Wait for news, or until something is due."""
@@ -288,13 +294,3 @@ class Follower:
 
 class _EstimatorFailed(Exception):  # noqa: N818 - names the condition
     """The tracker raised what it never should."""
-
-
-def _for_a_while(work: Iterator[bool]) -> bool:
-    """Work until time is over and an entry is whole; False when all is done."""
-    began = time.perf_counter()
-    for whole in work:
-        spent_s = time.perf_counter() - began
-        if (whole and spent_s >= SLICE_S) or spent_s >= LONGEST_SLICE_S:
-            return True
-    return False

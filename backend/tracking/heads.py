@@ -9,7 +9,7 @@ import sqlalchemy as sa
 
 from backend.log.engine import reading
 from backend.log.incident import Incident, IncidentSettings, Origin
-from backend.log.schema import incidents, snapshots
+from backend.log.schema import incidents, snapshots, stretches
 from estimator.trackers.base import TrackerSettings
 
 MADE_WITH_KEPT = 4096
@@ -22,14 +22,25 @@ class MadeWith(msgspec.Struct, frozen=True):
     Attributes:
         tracker: name of the tracker.
         settings: what it is told.
+        stretch: number of the incident's stretch in which it was told so.
     """
 
     tracker: str
     settings: TrackerSettings
+    stretch: int = 0
+
+    def tells_as(self, other: "MadeWith") -> bool:
+        """The tracker is the same and told the same, if not in the same stretch."""
+        return (self.tracker, self.settings) == (other.tracker, other.settings)
 
     def encoded(self) -> str:
         """As it is stored beside a snapshot."""
         return msgspec.json.encode(self).decode()
+
+    @staticmethod
+    def stored(encoded: str) -> "MadeWith":
+        """The inverse of `encoded`."""
+        return _stored(encoded)
 
 
 class Head(msgspec.Struct, frozen=True, kw_only=True):
@@ -42,6 +53,7 @@ class Head(msgspec.Struct, frozen=True, kw_only=True):
         tracker: name of its tracker.
         settings: what its tracker is told.
         live: it goes by the server's clock.
+        stretch: number of its newest stretch: as often has it been set otherwise since it was opened.
     """
 
     incident: str
@@ -50,11 +62,12 @@ class Head(msgspec.Struct, frozen=True, kw_only=True):
     tracker: str
     settings: TrackerSettings
     live: bool
+    stretch: int = 0
 
     @property
     def made_with(self) -> MadeWith:
         """What a fold of it is made with."""
-        return MadeWith(self.tracker, self.settings)
+        return MadeWith(self.tracker, self.settings, self.stretch)
 
 
 _heads = (
@@ -67,6 +80,10 @@ _heads = (
         sa.type_coerce(incidents.c.settings, sa.Text).label("settings"),
         sa.func.coalesce(snapshots.c.seq, 0).label("snapshot_seq"),
         snapshots.c.made_with,
+        sa.select(sa.func.max(stretches.c.number))
+        .where(stretches.c.incident == incidents.c.id)
+        .scalar_subquery()
+        .label("stretch"),
     )
     .select_from(incidents.outerjoin(snapshots, snapshots.c.incident == incidents.c.id))
     .order_by(incidents.c.created)
@@ -76,7 +93,7 @@ _heads = (
 def heads(engine: sa.Engine, followed: Collection[str]) -> list[Head]:
     """The incidents that are not folded to their end, and those that are followed already.
 
-    One whose snapshot was made with another tracker, or was told otherwise, is not folded at all yet.
+    One whose snapshot was made in an earlier stretch is not folded to its end, whatever was set.
 
     Args:
         engine: of the log's database.
@@ -93,11 +110,11 @@ def heads(engine: sa.Engine, followed: Collection[str]) -> list[Head]:
 def _folded(row: Any) -> bool:
     if row.last_seq > row.snapshot_seq:
         return False
-    return row.made_with is None or _stored(row.made_with) == _told(row.settings, row.origin)
+    return row.made_with is None or _stored(row.made_with) == _head(row).made_with
 
 
 def _head(row: Any) -> Head:
-    told = _told(row.settings, row.origin)
+    told = told_by(row.settings, row.origin)
     return Head(
         incident=row.id,
         closed=row.state == "closed",
@@ -105,6 +122,7 @@ def _head(row: Any) -> Head:
         tracker=told.tracker,
         settings=told.settings,
         live=row.clock == "live",
+        stretch=row.stretch,
     )
 
 
@@ -114,11 +132,11 @@ def _stored(made_with: str) -> MadeWith:
 
 
 @lru_cache(MADE_WITH_KEPT)
-def _told(settings: str, origin: str | None) -> MadeWith:
-    """What an incident says, from its settings and its origin as they are stored."""
+def told_by(settings: str, origin: str | None, stretch: int = 0) -> MadeWith:
+    """What an incident's tracker is told, by settings and an origin as they are stored."""
     known = IncidentSettings.model_validate_json(settings)
     place = None if origin is None else Origin.model_validate_json(origin)
-    return MadeWith(known.tracker, _tracker_settings(known, place))
+    return MadeWith(known.tracker, _tracker_settings(known, place), stretch)
 
 
 def head_of(incident: Incident) -> Head:
@@ -130,6 +148,7 @@ def head_of(incident: Incident) -> Head:
         tracker=incident.settings.tracker,
         settings=_tracker_settings(incident.settings, incident.origin),
         live=incident.clock == "live",
+        stretch=len(incident.stretches) - 1,
     )
 
 

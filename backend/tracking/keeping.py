@@ -6,6 +6,7 @@ import time
 import structlog
 
 from backend.log.base import DerivedWriter, LogUnwritable, RecordedFrame, Snapshot
+from backend.tracking.heads import MadeWith
 
 SAVE_EVERY_S = 1.0
 SAVE_SOON_S = 0.2
@@ -26,11 +27,14 @@ class Keeper:
         incident: whose.
         epoch: of the lease under which it is written.
         settled: seconds before this one are recorded already and stay as they were shown.
-        seq: newest log entry of the stored state.
+        at: newest log entry and newest stretch of the stored state.
+
+    Attributes:
+        snapshot_at: the same, of the state that is stored by now.
     """
 
     def __init__(
-        self, writer: DerivedWriter, incident: str, epoch: int, settled: int | None, seq: int
+        self, writer: DerivedWriter, incident: str, epoch: int, settled: int | None, at: tuple[int, int]
     ) -> None:
         self._writer = writer
         self._incident = incident
@@ -40,7 +44,7 @@ class Keeper:
         self._bytes = 0
         self._saved_at = self._snapshot_at = time.monotonic()
         self._pause_s = 0.0
-        self.snapshot_seq = seq
+        self.snapshot_at = at
 
     def take(self, row: RecordedFrame) -> None:
         """Have a row stored; it replaces one of the same second."""
@@ -68,13 +72,14 @@ class Keeper:
         every_s = SAVE_SOON_S if soon else SAVE_EVERY_S
         return max(0.0, self._saved_at + max(every_s, self._pause_s) - time.monotonic())
 
-    def wants_snapshot(self, seq: int, *, idle: bool) -> bool:
+    def wants_snapshot(self, at: tuple[int, int], *, idle: bool) -> bool:
         """Whether a new state is worth its while: much was folded since the last one, or there is time."""
-        if seq == self.snapshot_seq:
+        if at == self.snapshot_at:
             return False
         return (
             idle
-            or seq - self.snapshot_seq >= SNAPSHOT_EVERY_BATCHES
+            or at[1] != self.snapshot_at[1]
+            or at[0] - self.snapshot_at[0] >= SNAPSHOT_EVERY_BATCHES
             or time.monotonic() - self._snapshot_at >= SNAPSHOT_EVERY_S
         )
 
@@ -109,6 +114,8 @@ class Keeper:
         self._bytes = sum(len(row.record) for row in list(self._waiting.values()))
         self._pause_s = 0.0
         if snapshot is not None:
-            self.snapshot_seq = snapshot.seq
+            made_with = snapshot.made_with
+            stretch = 0 if made_with is None else MadeWith.stored(made_with).stretch
+            self.snapshot_at = snapshot.seq, stretch
             self._snapshot_at = time.monotonic()
         return True

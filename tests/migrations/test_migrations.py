@@ -66,7 +66,7 @@ def test_preparing_again_changes_nothing(database_url: str) -> None:
     )
     prepare(database_url)
     assert differences(database_url) == []
-    assert revisions(database_url) == ["0002"]
+    assert revisions(database_url) == ["0003"]
 
 
 def test_an_older_database_is_brought_up_to_date(database_url: str) -> None:
@@ -74,7 +74,7 @@ def test_an_older_database_is_brought_up_to_date(database_url: str) -> None:
     execute(database_url, "CREATE TABLE alembic_version (version_num VARCHAR(32) NOT NULL PRIMARY KEY)")
     prepare(database_url)
     assert differences(database_url) == []
-    assert revisions(database_url) == ["0002"]
+    assert revisions(database_url) == ["0003"]
 
 
 def test_older_snapshots_are_taken_to_be_made_with_what_their_incidents_say(database_url: str) -> None:
@@ -83,6 +83,7 @@ def test_older_snapshots_are_taken_to_be_made_with_what_their_incidents_say(data
     incident = IncidentStore(engine).create("x", "live", Origin(lat=59.0, lon=18.0, hae=1.5))
     execute(
         database_url,
+        "DROP TABLE stretches",
         "ALTER TABLE snapshots DROP COLUMN made_with",
         "INSERT INTO snapshots (incident, seq, state) SELECT id, 0, '' FROM incidents",
         "UPDATE alembic_version SET version_num = '0001'",
@@ -93,6 +94,23 @@ def test_older_snapshots_are_taken_to_be_made_with_what_their_incidents_say(data
     engine.dispose()
     assert differences(database_url) == []
     assert msgspec.json.decode(stored, type=MadeWith) == head_of(incident).made_with
+
+
+def test_older_incidents_are_taken_to_be_opened_with_what_they_say(database_url: str) -> None:
+    prepare(database_url)
+    engine = make_engine(database_url)
+    store = IncidentStore(engine)
+    known = store.create("x", "live", Origin(lat=59.0, lon=18.0, hae=1.5), created=5.0)
+    changed = store.change(known.id, {"settings": {"lag_s": 5.0}})
+    execute(database_url, "DROP TABLE stretches", "UPDATE alembic_version SET version_num = '0002'")
+    prepare(database_url)
+    migrated = store.get(known.id)
+    engine.dispose()
+    (only,) = migrated.stretches
+    assert (only.after_seq, only.since) == (0, 5.0)
+    assert migrated.set_to(only) == migrated
+    assert migrated.settings == changed.settings
+    assert differences(database_url) == []
 
 
 def test_a_newer_database_is_refused_with_what_to_do(database_url: str) -> None:
@@ -113,7 +131,7 @@ def test_processes_that_start_at_once_migrate_once(database_url: str) -> None:
     processes = [subprocess.Popen([*command, database_url], cwd=ROOT) for _ in range(4)]
     assert [process.wait(60) for process in processes] == [0, 0, 0, 0]
     assert differences(database_url) == []
-    assert revisions(database_url) == ["0002"]
+    assert revisions(database_url) == ["0003"]
 
 
 def test_a_migration_that_fails_leaves_the_database_as_it_was(database_url: str) -> None:

@@ -94,6 +94,7 @@ export function anIncident(over: Partial<Incident> = {}): Incident {
     last_seq: 0,
     first_t: null,
     last_t: null,
+    stretches: [],
     ...over,
   };
 }

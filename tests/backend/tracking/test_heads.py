@@ -43,8 +43,23 @@ def test_an_incident_folded_with_other_settings_is_not_folded(
     assert heads(engine, []) == [head_of(changed)]
 
 
-def test_what_changes_no_numbers_leaves_an_incident_folded(
+def test_a_name_and_an_end_leave_an_incident_folded(
     engine: sa.Engine, store: IncidentStore, folded: str
 ) -> None:
-    store.change(folded, {"name": "renamed", "settings": {"stale_after_s": 5.0}, "state": "closed"})
+    store.change(folded, {"name": "renamed", "state": "closed"})
     assert heads(engine, []) == []
+
+
+def test_whatever_was_set_is_noted_with_the_state(
+    engine: sa.Engine, store: IncidentStore, folded: str
+) -> None:
+    changed = store.change(folded, {"settings": {"stale_after_s": 5.0}})
+    assert heads(engine, []) == [head_of(changed)]
+
+
+def test_settings_that_were_changed_back_are_folded_all_the_same(
+    engine: sa.Engine, store: IncidentStore, folded: str
+) -> None:
+    store.change(folded, {"settings": {"tracker": "paper-a"}})
+    changed = store.change(folded, {"settings": {"tracker": "kirchhoff"}})
+    assert heads(engine, []) == [head_of(changed)]

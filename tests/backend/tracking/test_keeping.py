@@ -24,7 +24,7 @@ def keeper(engine: sa.Engine) -> Callable[..., Keeper]:
     def make(writer_engine: sa.Engine = engine, settled: int | None = None) -> Keeper:
         epoch = Leases(lambda: writing(engine), "north").acquire("i1")
         assert epoch is not None
-        return Keeper(SqlDerivedWriter(writer_engine), "i1", epoch, settled, 0)
+        return Keeper(SqlDerivedWriter(writer_engine), "i1", epoch, settled, (0, 0))
 
     return make
 
@@ -43,7 +43,7 @@ def test_rows_and_state_are_stored_together(engine: sa.Engine, keeper: Callable[
     snapshot = SqlLogReader(engine).snapshot("i1")
     assert snapshot == Snapshot(seq=9, state=b"state")
     assert keeping.empty
-    assert keeping.snapshot_seq == 9
+    assert keeping.snapshot_at == (9, 0)
 
 
 def test_a_full_disk_costs_no_row(sqlite_url: str, engine: sa.Engine, keeper: Callable[..., Keeper]) -> None:
@@ -111,7 +111,8 @@ def test_folding_waits_where_too_much_waits_to_be_stored(keeper: Callable[..., K
 
 def test_a_state_is_stored_when_there_is_time_or_much_was_folded(keeper: Callable[..., Keeper]) -> None:
     keeping = keeper()
-    assert not keeping.wants_snapshot(0, idle=True)
-    assert keeping.wants_snapshot(1, idle=True)
-    assert not keeping.wants_snapshot(1, idle=False)
-    assert keeping.wants_snapshot(SNAPSHOT_EVERY_BATCHES, idle=False)
+    assert not keeping.wants_snapshot((0, 0), idle=True)
+    assert keeping.wants_snapshot((1, 0), idle=True)
+    assert not keeping.wants_snapshot((1, 0), idle=False)
+    assert keeping.wants_snapshot((0, 1), idle=False)
+    assert keeping.wants_snapshot((SNAPSHOT_EVERY_BATCHES, 0), idle=False)
