@@ -1,7 +1,8 @@
 /** The marks on the timeline: what has been seen, and what the record tells of the time before. */
 import { dropsOf, type LoggedAlarm, type LoggedDrop, newBreadcrumbs } from "../domain/logged";
 import { raisedOf } from "../domain/past-alarms";
-import { type Mark, withAlarmMarks, withDropMarks } from "../domain/timeline";
+import { setMarks } from "../domain/stretches";
+import { type Mark, withAlarmMarks, withDropMarks, withSetMarks } from "../domain/timeline";
 import type { DeltaMessage, FrameAlarm, FrameMessage, Incident } from "../domain/types";
 import { loggedPages } from "../sources/log";
 
@@ -27,6 +28,11 @@ export class Marks {
     for (const { node } of fresh) this.lying.add(node);
     // Those of a whole frame may have lain there for long: of them the log tells.
     if (message.type === "delta") this.drops(fresh);
+  }
+
+  /** The incident is as it was told of now. */
+  told(incident: Incident): void {
+    this.list = withSetMarks(this.list, setMarks(incident));
   }
 
   /** Reads the past out of the log of an incident; what cannot be read has no marks. */

@@ -11,6 +11,7 @@ import type { LevelChoice } from "../domain/levels";
 import { presenceOf } from "../domain/presence";
 import { isMoving, limitsOf, whileUnheard } from "../domain/staleness";
 import { withStoreysAged } from "../domain/storey-age";
+import { toldAt } from "../domain/stretches";
 import { type Extent, extentOf } from "../domain/timeline";
 import { Trails } from "../domain/trails";
 import type { DeltaMessage, FrameMessage, Incident, Track } from "../domain/types";
@@ -79,15 +80,23 @@ export class Screen implements DoorOwner, ReplayOwner {
 
   readonly mode = $derived<"live" | "replay">(this.replay.on ? "replay" : "live");
   private readonly feed = $derived(this.replay.shown ? this.replay.feed : this.live);
-  readonly levels = $derived(this.incident?.levels ?? []);
   /** Incident time (Unix s). */
   readonly now = $derived(incidentTime(this.feed.clock, this.localMs));
+  /** The incident as it was set at the moment that is shown. */
+  private readonly told = $derived(
+    this.replay.shown && this.incident !== null
+      ? toldAt(this.incident, this.now, this.feed.picture?.seq ?? 0)
+      : this.incident,
+  );
+  readonly levels = $derived(this.told?.levels ?? []);
   /** The moment that is asked for (Unix s): what is shown, or, until it comes, what was sought. */
   readonly askedT = $derived(this.replay.soughtT ?? this.now);
   readonly liveNow = $derived(incidentTime(this.live.clock, this.localMs));
   readonly picture = $derived(withStoreysAged(this.feed.picture, this.now, this.levels));
   /** As the incident is now, also while its past is looked at: a live alarm has the live place. */
-  readonly livePicture = $derived(withStoreysAged(this.live.picture, this.liveNow, this.levels));
+  readonly livePicture = $derived(
+    withStoreysAged(this.live.picture, this.liveNow, this.incident?.levels ?? []),
+  );
   /** The link that is lost, if one is: of what is shown, or the live one, by which alarms come. */
   readonly lostLink = $derived(
     this.incident === null ? null : ([this.live, this.replay.feed].find((feed) => feed.isLost)?.link ?? null),
@@ -119,7 +128,7 @@ export class Screen implements DoorOwner, ReplayOwner {
     knownNow(this.replay.shown ? this.compare.tracks : [], this.picture, this.now, this.levels),
   );
   readonly limits = $derived(
-    this.presence === "unheard" ? whileUnheard(limitsOf(this.incident)) : limitsOf(this.incident),
+    this.presence === "unheard" ? whileUnheard(limitsOf(this.told)) : limitsOf(this.told),
   );
   readonly crews = $derived(crewMarks([...(this.picture?.nodes.values() ?? [])].map(({ state }) => state)));
   readonly alarmList = $derived(inOrder(this.standing));
@@ -187,6 +196,7 @@ export class Screen implements DoorOwner, ReplayOwner {
     this.incident = incident;
     this.standing = new Map();
     this.marks.clear();
+    this.marks.told(incident);
     this.trackList = [];
     this.selected = node;
     this.level = level;
@@ -215,6 +225,7 @@ export class Screen implements DoorOwner, ReplayOwner {
     // Closed is for good: an answer that was long on its way does not open it again.
     if (this.closed && incident.state === "active") return;
     this.incident = incident;
+    this.marks.told(incident);
   }
 
   /** Back to what is now. */

@@ -11,6 +11,7 @@ import {
   withAlarmMarks,
   withDropMarks,
   within,
+  withSetMarks,
 } from "./timeline";
 import type { Track } from "./types";
 
@@ -117,4 +118,12 @@ test("what happened within a second of the moment that is shown is said, and not
   const marks: Mark[] = [0, 0.9, 2].map((s) => ({ t: NOON + s, kind: "drop", text: `b${s} dropped` }));
   expect(eventsAt(marks, NOON).map(({ text }) => text)).toEqual(["b0 dropped", "b0.9 dropped"]);
   expect(eventsAt(marks, NOON + 5)).toEqual([]);
+});
+
+test("what was set is marked once, among the alarms", () => {
+  const set: Mark[] = [{ t: NOON + 5, kind: "set", text: "Set: storeys" }];
+  const alarms = withAlarmMarks([], [anAlarm({ t: NOON }), anAlarm({ t: NOON + 60 })], String);
+  const marks = withSetMarks(alarms, set);
+  expect(marks.map(({ kind }) => kind)).toEqual(["alarm", "set", "alarm"]);
+  expect(withSetMarks(marks, set)).toBe(marks);
 });

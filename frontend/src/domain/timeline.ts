@@ -9,7 +9,7 @@ export interface Extent {
 
 export interface Mark {
   readonly t: number;
-  readonly kind: "alarm" | "drop";
+  readonly kind: "alarm" | "drop" | "set";
   readonly text: string;
 }
 
@@ -81,6 +81,12 @@ export function withAlarmMarks(
       (alarm): Mark => ({ t: alarm.t, kind: "alarm", text: `${alarmWord(alarm.alarm)} ${name(alarm.node)}` }),
     )
     .filter((mark) => !marks.some((known) => known.t === mark.t && known.text === mark.text));
+  return fresh.length === 0 ? marks : [...marks, ...fresh].sort((a, b) => a.t - b.t);
+}
+
+/** Adds the marks of what was set that are not there yet; the very same array where nothing is new. */
+export function withSetMarks(marks: readonly Mark[], set: readonly Mark[]): readonly Mark[] {
+  const fresh = set.filter((mark) => !marks.some(({ t, text }) => t === mark.t && text === mark.text));
   return fresh.length === 0 ? marks : [...marks, ...fresh].sort((a, b) => a.t - b.t);
 }
 

@@ -7,6 +7,7 @@ export type Role = Schemas["FrameNode"]["role"];
 export type Status = Schemas["FrameNode"]["status"];
 export type Level = Schemas["Level"];
 export type Incident = Schemas["Incident"];
+export type Stretch = Schemas["Stretch"];
 export type Frame = Schemas["Frame"];
 export type FrameNode = Schemas["FrameNode"];
 export type FrameAlarm = Schemas["FrameAlarm"];
