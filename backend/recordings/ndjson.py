@@ -12,9 +12,8 @@ from tempfile import NamedTemporaryFile
 
 import msgspec
 import sqlalchemy as sa
-from pydantic import ValidationError
 
-from backend.errors import Invalid, NotFound, NotUnderstood, Problem, TooLarge, in_reach
+from backend.errors import NotFound, NotUnderstood, Problem, TooLarge, in_reach
 from backend.log.append import append_group
 from backend.log.base import NewBatch
 from backend.log.decode import judge
