@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.fusion import physics
-from estimator.fusion.images import Image, mirrored, turned_about
+from estimator.fusion.images import Image
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.motion.silence import SILENT_S
 from estimator.graph.dense import Array
 from estimator.graph.kernels import Integers
 from estimator.smoothing.images.nearest import nearest
+from estimator.smoothing.images.symmetries import across, around
 from estimator.smoothing.keyframes.layout import Walk
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
@@ -26,7 +27,6 @@ RADIOS = 2
 """Radios whose symmetries are asked about: those that tell most of where somebody is."""
 MAST_M = 0.5
 """Two radios on one mast, one above the other, are on no line on whose sides somebody may be."""
-TURNS = 8
 LOOSE_M2 = 0.2
 """A unit's step of a larger variance was made in silence."""
 SLACK_M, SLACK_DB = 0.5, 4.0
@@ -208,15 +208,16 @@ def flips(
             off_m = way_m - radio_m
             for k in nearest(np.hypot(*off_m.T), walk, loose, effort.nearest, effort.newest):
                 towards = float(np.arctan2(off_m[k, 1], off_m[k, 0]))
-                found += [Flip(k, image) for image in _around(radio_m, towards)]
-        for image, off_m in _across(radios, way_m):
+                found += [Flip(k, image) for image in around(radio_m, towards)]
+        for image, off_m in across(radios, way_m):
             near = nearest(np.abs(off_m), walk, loose, effort.nearest, effort.newest)
             found += [Flip(k, image) for k in near]
             if effort.whole:
                 found += [Flip(k, image, until) for k, until in pairwise(near)]
     if effort.whole:
         found += _between(heard, way_m, walk, loose, effort)
-    found = [flip for flip in dict.fromkeys(found) if not _contradicted(heard, flip, loose)]
+    met = [_met(heard, way_m, flip, loose) for flip in dict.fromkeys(found)]
+    found = [flip for flip in met if flip is not None]
     jumps_m = [float(np.hypot(*(flip.image.of(way_m[flip.since]) - way_m[flip.since]))) for flip in found]
     return [found[k] for k in np.argsort(np.array(jumps_m), kind="stable")[: effort.flips].tolist()]
 
@@ -232,7 +233,7 @@ def _between(heard: Heard, way_m: Array, walk: Walk, loose: NDArray[np.bool_], e
         about = heard.slab[np.abs(off_s) <= 1.5 * RECENT_S]
         own = loose.copy()
         own[: about.min()] = own[about.max() + 1 :] = False
-        for image, off_m in _across(radios_of(heard.some(np.abs(off_s) <= 0.5 * RECENT_S)), way_m):
+        for image, off_m in across(radios_of(heard.some(np.abs(off_s) <= 0.5 * RECENT_S)), way_m):
             near = nearest(np.abs(off_m), walk, own, effort.nearest, effort.newest)
             found += [Flip(k, image, until) for k, until in pairwise(near)]
     return found
@@ -244,9 +245,26 @@ def end_of(flip: Flip, loose: NDArray[np.bool_]) -> int:
     return end if flip.until is None else min(end, flip.until)
 
 
-def _contradicted(heard: Heard, flip: Flip, loose: NDArray[np.bool_]) -> bool:
-    within = (heard.slab >= flip.since) & (heard.slab <= end_of(flip, loose))
-    return heard.some(within).contradicts(flip.image)
+def _met(heard: Heard, way_m: Array, flip: Flip, loose: NDArray[np.bool_]) -> Flip | None:
+    """An image that puts him there where he is heard of next; None: what he has heard contradicts it.
+
+    Args:
+        heard: what he has heard.
+        way_m: where he was at each keyframe, k × 2 (m).
+        flip: the image.
+        loose: see `loose_steps`.
+    """
+    end = end_of(flip, loose)
+    heard = heard.some(heard.slab >= flip.since)
+    within = heard.slab <= end
+    if within.any() or flip.until is not None or not len(within):
+        return None if heard.some(within).contradicts(flip.image) else flip
+    # Nothing was heard before his unit led again: what it has led since then goes along as it is.
+    met = int(heard.slab.min())
+    off_m = flip.image.of(way_m[met]) - way_m[met]
+    if heard.some(heard.slab == met).contradicts(Image(east_m=float(off_m[0]), north_m=float(off_m[1]))):
+        return None
+    return flip._replace(image=flip.image.through(way_m[end], way_m[end] + off_m))
 
 
 def exposed(heard: Heard, now: float) -> bool:
@@ -258,8 +276,8 @@ def exposed(heard: Heard, now: float) -> bool:
     """
     last = heard.some(heard.t > now - RECENT_S)
     radios = radios_of(last)
-    images = [image for image, _ in _across(radios, last.here_m)] or [
-        image for radio_m in radios for image in _around(radio_m, 0.0)
+    images = [image for image, _ in across(radios, last.here_m)] or [
+        image for radio_m in radios for image in around(radio_m, 0.0)
     ]
     return any(not last.contradicts(image) for image in images)
 
@@ -275,20 +293,3 @@ def radios_of(heard: Heard) -> list[Array]:
         if told[k] > 0.0 and apart and len(found) < RADIOS:
             found.append(at_m)
     return found
-
-
-def _around(radio_m: Array, towards_rad: float) -> list[Image]:
-    """Turns and reflections that leave all ranges to one radio as they are."""
-    turns = [turned_about(radio_m, 2.0 * np.pi * j / TURNS) for j in range(1, TURNS)]
-    return turns + [mirrored(radio_m, towards_rad + np.pi * j / TURNS) for j in range(TURNS)]
-
-
-def _across(radios: list[Array], places_m: Array) -> list[tuple[Image, Array]]:
-    """The reflection that leaves ranges to two radios as they are, and how far off its line places are."""
-    if len(radios) < RADIOS:
-        return []
-    # The same line is the same image, whichever of them tells more.
-    one, other = sorted(radios, key=lambda place_m: tuple(place_m.tolist()))
-    towards = float(np.arctan2(other[1] - one[1], other[0] - one[0]))
-    off = places_m - one
-    return [(mirrored(one, towards), np.cos(towards) * off[:, 1] - np.sin(towards) * off[:, 0])]

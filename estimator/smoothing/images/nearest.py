@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.graph.dense import Array
+from estimator.graph.kernels import Integers
 from estimator.smoothing.keyframes.layout import Walk
 
 
@@ -22,5 +23,23 @@ def nearest(off_m: Array, walk: Walk, loose: NDArray[np.bool_], most: int, newes
     if walk.begins:
         at = np.concatenate([[0], at])
     at = at[loose[walk.first + at]]
+    if walk.way is not None:
+        at = np.union1d(at, _ends(own, loose[walk.first : walk.last + 1]))
     found = at[np.argsort(own[at], kind="stable")[:most]]
     return sorted({*(walk.first + found).tolist(), *(walk.first + at[-newest:]).tolist()})
+
+
+def _ends(own_m: Array, loose: NDArray[np.bool_]) -> Integers:
+    """Where somebody was nearest of a stretch that nothing led, if that is where it begins or ends.
+
+    Args:
+        own_m: how far off he was at each keyframe of his life, k (m).
+        loose: see `loose_steps`, k.
+    """
+    turns = np.flatnonzero(np.diff(loose, prepend=False, append=False))
+    firsts, ends = turns[::2], turns[1::2]
+    # Where it begins he was known: from the next keyframe on he may have been elsewhere.
+    away = firsts[(own_m[firsts] <= own_m[firsts + 1]) & (ends > firsts + 1)] + 1
+    led = ends[ends < len(own_m) - 1]
+    towards = led[own_m[led] <= own_m[led - 1]] - 1
+    return np.concatenate([away, towards])

@@ -129,3 +129,30 @@ def test_a_silent_unit_leaves_its_bearer_to_ranges() -> None:
     grid = problem.layout.grid[:-1][loose_steps(problem, solved, 0)[:-1]]
     assert 14.0 <= grid[0] <= 17.0
     assert 24.0 <= grid[-1] <= 27.0
+
+
+def silent(heard_again_s: int) -> list[AnyReading]:
+    """Somebody walks east, is silent for 20 s, and is led on by his unit before he is ranged again."""
+    readings: list[AnyReading] = [
+        Node(t=0.0, node=name, role="anchor", position_m=(*at, 0.0)) for name, at in TWO.items()
+    ]
+    readings.append(Node(t=0.0, node="ff1", role="responder", position_m=(0.0, -12.0, 0.0), sigma_m=0.2))
+    for second in [*range(1, 11), *range(31, 51)]:
+        at = np.array([float(second), -12.0 if second <= 10 else -4.0])
+        readings.append(Displacement(t=second, from_t=second - 1.0, node="ff1", delta_m=(1.0, 0.0, 0.0)))
+        for name, place in TWO.items() if second <= 10 or second >= heard_again_s else ():
+            range_m = float(np.hypot(*(at - place)))
+            readings.append(Range(t=second, a="ff1", b=name, range_m=range_m, technology="uwb"))
+    return readings
+
+
+@pytest.mark.parametrize("heard_again_s", [31, 32, 36])
+def test_who_is_heard_again_once_his_unit_leads_may_be_across_the_line_there(heard_again_s: int) -> None:
+    problem, solved = solved_of(silent(heard_again_s))
+    walk, way_m, loose = problem.layout.walks[0], places(problem, solved), loose_steps(problem, solved, 0)
+    found = flips(heard_by(problem, solved, walk), way_m, walk, loose, 50.0, LIVE)
+    met = int(np.searchsorted(problem.layout.grid, heard_again_s))
+    led = int(np.flatnonzero(loose)[-1]) + 1
+    # What the unit has led on goes along as it is: where it begins is as far from where he is heard again.
+    across_m = way_m[met] * [1.0, -1.0] + way_m[led] - way_m[met]
+    assert any(np.hypot(*(flip.image.of(way_m[led]) - across_m)) < 1.0 for flip in found)
