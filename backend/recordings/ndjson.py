@@ -13,28 +13,22 @@ from tempfile import NamedTemporaryFile
 import msgspec
 import sqlalchemy as sa
 
-from backend.errors import NotFound, NotUnderstood, Problem, TooLarge, in_reach
+from backend.errors import NotFound, NotUnderstood, Problem, in_reach
 from backend.log.append import append_group
 from backend.log.base import NewBatch
-from backend.log.decode import judge
 from backend.log.engine import make_engine
 from backend.log.incident import Clock, Incident, Level, Origin, Stretch
 from backend.log.incidents import IncidentStore
-from backend.log.lines import Line, log_line, parse_line
+from backend.log.lines import log_line
 from backend.log.migrate import prepare
 from backend.log.read import SqlLogReader
-from backend.recordings.about import About, about, understood
-
-MAX_READINGS = 10_000
-"""The contract's limit of a batch: what was exported had passed it."""
+from backend.recordings.about import about
+from backend.recordings.exported import Numbered, about_in, batches_in
 
 STANDARD_INPUT = Path("-")
 
 GROUP_BATCHES = 256
 GROUP_BYTES = 8 * 1024 * 1024
-
-Numbered = tuple[int, NewBatch]
-"""A batch with the `seq` of its line in a file."""
 
 Progress = Callable[[int, int], None]
 """Called with the lines written so far and all lines of the file."""
@@ -107,7 +101,7 @@ def import_log(
         LogUnwritable: the database cannot be written.
     """
     with _readable_twice(path) as (file, said):
-        known = _about(file, said)
+        known = about_in(file, said)
         given = {"name": name, "clock": clock}
         known = known.model_copy(update={field: value for field, value in given.items() if value is not None})
         known = known.with_options(levels, origin, settings or {})
@@ -194,79 +188,6 @@ def find_incident(store: IncidentStore, name: str) -> Incident:
 
 def _set(store: IncidentStore, incident: str, change: Stretch) -> None:
     store.change(incident, change.model_dump(exclude={"after_seq"}))
-
-
-def batches_in(path: Path, incident: str, clock: Clock, said: str) -> Iterator[Numbered]:
-    """The lines of a file as batches of `incident`, each with its `seq` there; empty lines are left out.
-
-    Args:
-        path: of the file.
-        incident: whose they become.
-        clock: of the incident.
-        said: what the file is called when one of its lines is refused.
-
-    Raises:
-        NotUnderstood: a line is no batch; the message names it.
-        TooLarge: a line has more readings than a batch may have.
-        CommandRefused: the file cannot be read.
-    """
-    for count, (number, line) in enumerate(_lines(path, said), start=1):
-        if count > 1 and line.incident is not None:
-            raise NotUnderstood(
-                f"{said}, line {number}: another incident begins here, and each has a file of its own. "
-                "Nothing was imported."
-            )
-        with _naming(said, number):
-            batch = _new_batch(line, incident, clock)
-        yield count if line.seq is None else line.seq, batch
-
-
-def _about(path: Path, said: str) -> About:
-    """What the first line of a file says of its incident."""
-    for number, line in _lines(path, said):
-        with _naming(said, number):
-            return understood(line.incident)
-    return understood(None)
-
-
-def _lines(path: Path, said: str) -> Iterator[tuple[int, Line]]:
-    """The lines that are not empty, with their numbers from 1."""
-    with in_reach(said), path.open("rb") as file:
-        for number, text in enumerate(file, start=1):
-            if text.strip():
-                with _naming(said, number):
-                    line = parse_line(text)
-                yield number, line
-
-
-@contextmanager
-def _naming(said: str, number: int) -> Iterator[None]:
-    """What is refused is refused by the name of the file and the number of its line."""
-    try:
-        yield
-    except (NotUnderstood, TooLarge) as error:
-        why = error.detail.removesuffix(".")
-        raise type(error)(f"{said}, line {number}: {why}. Nothing was imported.") from error
-
-
-def _new_batch(line: Line, incident: str, clock: Clock) -> NewBatch:
-    body = line.body()
-    judged = judge(body, MAX_READINGS, line.received if clock == "live" else None)
-    aside = {fault.index for fault in line.rejected}
-    rejected = line.rejected + tuple(fault for fault in judged.rejected if fault.index not in aside)
-    count = len(judged.accepted) + len(judged.rejected)
-    newest = max((reading.until_t for reading in judged.accepted), default=0.0)
-    received = line.received if line.received is not None else line.sent
-    return NewBatch(
-        incident=incident,
-        gateway=line.gateway,
-        batch=line.batch,
-        received=newest if received is None else received,
-        sent=line.sent,
-        body=body,
-        accepted=count - len(rejected),
-        rejected=tuple(sorted(rejected, key=lambda fault: fault.index or 0)),
-    )
 
 
 def _groups(batches: Iterator[Numbered], changes: Sequence[Stretch]) -> Iterator[list[Numbered]]:
