@@ -97,7 +97,7 @@ def make_engine(url: str, *, checkpoints: bool = False) -> sa.Engine:
 
 
 AWAY = (sa.exc.OperationalError, sa.exc.InterfaceError, sa.exc.InternalError, sa.exc.TimeoutError)
-"""What SQLAlchemy raises where the database fails, and not what was asked of it."""
+"""What SQLAlchemy raises where the database fails, and not what was asked of it; see `_failed`."""
 
 
 def _write_ahead(connection: SqliteConnection) -> None:
@@ -124,7 +124,9 @@ def writing(engine: sa.Engine) -> Iterator[sa.Connection]:
     try:
         with engine.execution_options(writes=True).begin() as connection:
             yield connection
-    except AWAY as error:
+    except sa.exc.SQLAlchemyError as error:
+        if not _failed(error):
+            raise
         # After an input or output error a connection may be of no more use: the next one is new.
         engine.dispose()
         raise LogUnwritable(
@@ -144,9 +146,16 @@ def reading(engine: sa.Engine) -> Iterator[sa.Connection]:
     try:
         with engine.connect() as connection:
             yield connection
-    except AWAY as error:
+    except sa.exc.SQLAlchemyError as error:
+        if not _failed(error):
+            raise
         engine.dispose()
         raise LogUnreadable(f"The database cannot be read now ({cause_of(error)}): try again.") from error
+
+
+def _failed(error: sa.exc.SQLAlchemyError) -> bool:
+    """Whether the database failed; of a damaged file SQLite raises what is of no kind but the base of all."""
+    return isinstance(error, AWAY) or type(error) is sa.exc.DatabaseError
 
 
 def cause_of(error: BaseException) -> str:

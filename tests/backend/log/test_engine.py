@@ -42,6 +42,38 @@ def test_a_database_that_cannot_be_reached_is_said_to_be_away(tmp_path: Path) ->
             pass
 
 
+def test_a_file_that_is_no_database_is_said_to_be_away(tmp_path: Path) -> None:
+    (tmp_path / "x.db").write_bytes(b"a photo of the stairs" * 1000)
+    engine = make_engine(f"sqlite:///{tmp_path / 'x.db'}")
+    with pytest.raises(LogUnwritable, match="not a database"), writing(engine):
+        pass
+    with pytest.raises(LogUnreadable, match="not a database"), reading(engine):
+        pass
+
+
+def test_a_damaged_file_is_said_to_be_away(tmp_path: Path) -> None:
+    path = tmp_path / "x.db"
+    engine = make_engine(f"sqlite:///{path}")
+    with writing(engine) as connection:
+        connection.exec_driver_sql("CREATE TABLE batches (body TEXT)")
+        connection.exec_driver_sql("INSERT INTO batches VALUES (hex(zeroblob(20000)))")
+    engine.dispose()
+    with path.open("r+b") as file:
+        file.seek(4096)
+        file.write(b"\xff" * 8192)
+    with pytest.raises(LogUnreadable, match="malformed"), reading(engine) as connection:
+        connection.exec_driver_sql("SELECT count(body) FROM batches").scalar()
+
+
+def test_what_is_asked_wrongly_is_a_defect_and_no_failure_of_the_database(tmp_path: Path) -> None:
+    engine = make_engine(f"sqlite:///{tmp_path / 'x.db'}")
+    with writing(engine) as connection:
+        connection.exec_driver_sql("CREATE TABLE batches (seq INTEGER PRIMARY KEY)")
+        connection.exec_driver_sql("INSERT INTO batches VALUES (1)")
+    with pytest.raises(sa.exc.IntegrityError), writing(engine) as connection:
+        connection.exec_driver_sql("INSERT INTO batches VALUES (1)")
+
+
 def test_another_kind_of_database_is_refused() -> None:
     with pytest.raises(CommandRefused, match="SQLite or Postgres"):
         make_engine("mysql://127.0.0.1/x")
