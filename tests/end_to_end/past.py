@@ -52,6 +52,19 @@ class PastCompared:
         return found
 
     @property
+    def was_set(self) -> list[str]:
+        """What was set under way, each where a mark on the timeline says so, without its time."""
+        found: list[str] = self.page.get_by_test_id("timeline").evaluate(
+            "(bar) => [...bar.querySelectorAll('.set')].map((mark) => mark.title.replace(/^\\S+ /, ''))"
+        )
+        return found
+
+    @property
+    def storeys(self) -> list[str]:
+        """The names on the storey buttons."""
+        return self.page.get_by_test_id("storeys").locator(".name").all_inner_texts()
+
+    @property
     def asked_aloud(self) -> str:
         """The moment at which the timeline's handle stands, as it is read aloud."""
         slider = self.page.get_by_test_id("timeline").get_by_role("slider")

@@ -6,7 +6,7 @@ from datetime import datetime
 import pytest
 
 from tests.end_to_end.commander import Commander
-from tests.end_to_end.scene import base, heard, one_inside, recorded, responder, step
+from tests.end_to_end.scene import LEVELS, base, heard, one_inside, recorded, responder, step
 from tests.running import Post, Server, eventually
 
 T0 = 1_763_712_345.0
@@ -74,6 +74,25 @@ def test_of_an_incident_that_goes_on_over_midnight_every_time_is_told_with_its_d
     commander.scrubs_to(midnight - 2)
     commander.plays()
     eventually(lambda: (commander.other_day, commander.clock[:5]) == ("Nov 22, 2025", "00:00"))
+
+
+def test_storeys_that_are_named_under_way_are_marked_and_the_past_keeps_its_own(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = one_inside(post)
+    began = time.time()
+    recorded(post, incident, began - 1)
+    eventually(lambda: time.time() > began + 3)
+    assert post.http.patch(f"/incidents/{incident}", json={"levels": LEVELS}).status_code == 200
+    heard(post, incident, step(time.time(), "walker", [1, 0, 0]))
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.was_set == ["Set: storeys"])
+    assert {"Ground", "First"} <= set(commander.storeys)
+
+    commander.scrubs_to(began)
+    eventually(lambda: commander.mode == "REPLAY" and not {"Ground", "First"} & set(commander.storeys))
+    commander.goes_back_to_live()
+    eventually(lambda: commander.mode == "LIVE" and {"Ground", "First"} <= set(commander.storeys))
 
 
 def test_the_handle_of_what_is_live_stands_at_the_end_from_the_first_second_on(
