@@ -75,6 +75,21 @@ class Watch:
                 await self.published.wait()
 
 
+def follow(
+    engine: sa.Engine, store: IncidentStore, incident: str, compute: ThreadPoolExecutor, seq: int
+) -> None:
+    """Follow an incident until an entry is shown, and end in order."""
+
+    async def go() -> None:
+        watch = Watch(engine, store, incident, compute)
+        following = asyncio.create_task(watch.follower.run())
+        await watch.shown(seq)
+        watch.follower.stop()
+        await following
+
+    asyncio.run(go())
+
+
 def status(t: float) -> Status:
     return Status(t=t, node="ff1", battery=0.5)
 
@@ -210,17 +225,10 @@ def test_another_tracker_leaves_what_was_shown_and_goes_on_from_there(
     write(incident, batches)
     reader = SqlLogReader(engine)
 
-    async def to_the_end() -> None:
-        watch = Watch(engine, store, incident, compute)
-        following = asyncio.create_task(watch.follower.run())
-        await watch.shown(len(batches))
-        watch.follower.stop()
-        await following
-
-    asyncio.run(to_the_end())
+    follow(engine, store, incident, compute, len(batches))
     before = list(reader.frames(incident))
     head = head_of(store.change(incident, {"settings": {"tracker": "paper-a"}}))
-    asyncio.run(to_the_end())
+    follow(engine, store, incident, compute, len(batches))
     snapshot = reader.snapshot(incident)
     assert snapshot is not None
     assert snapshot.made_with == head.made_with.encoded()

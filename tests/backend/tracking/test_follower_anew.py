@@ -16,7 +16,7 @@ from backend.tracking.course import Course
 from backend.tracking.fold import IncidentFold
 from estimator.measurements import AnyReading
 from tests.backend.tracking.conftest import Write, through, walk
-from tests.backend.tracking.test_follower import Watch
+from tests.backend.tracking.test_follower import Watch, follow
 
 
 @pytest.fixture
@@ -63,16 +63,9 @@ def test_who_is_told_to_stop_while_the_log_is_folded_anew_leaves_what_was_to_be_
                 await following
         assert folds[1].seq < len(batches) - 1
 
-    async def to_the_end() -> None:
-        watch = Watch(engine, store, incident, compute)
-        following = asyncio.create_task(watch.follower.run())
-        await watch.shown(len(batches))
-        watch.follower.stop()
-        await following
-
     asyncio.run(stopped_on_the_way())
     assert reader.snapshot(incident) is None
-    asyncio.run(to_the_end())
+    follow(engine, store, incident, compute, len(batches))
     course = Course.begin(reader, incident, live=True)
     made = list(through(course))
     last = course.fold.last_row()

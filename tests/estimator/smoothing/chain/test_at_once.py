@@ -1,6 +1,7 @@
 """Sums at once: what comes of them is what would come of them one after the other."""
 
 import threading
+from collections.abc import Callable, Iterable
 
 import numpy as np
 import pytest
@@ -44,8 +45,8 @@ def test_a_window_solved_at_once_is_the_same_to_the_last_bit(monkeypatch: pytest
     one_by_one = problem.solve(x)
     used: list[str] = []
 
-    def watched(work, *items):  # type: ignore[no-untyped-def]
-        used.append(work.__qualname__)
+    def watched(work: Callable[..., object], *items: Iterable[object]) -> list[object]:
+        used.append(getattr(work, "__qualname__", "?"))
         return at_once(work, *items)
 
     monkeypatch.setattr(chain, "LARGE", 0)
