@@ -40,6 +40,11 @@ class OthersSeen:
         ]
 
     @property
+    def words_of_elsewhere(self) -> str:
+        """Everything that is seen of other incidents."""
+        return " ".join(self.page.get_by_test_id("elsewhere").inner_text().split())
+
+    @property
     def spoken_of_elsewhere(self) -> str:
         """What a screen reader is told of other incidents."""
         return " ".join(self.page.get_by_test_id("elsewhere").get_by_role("alert").inner_text().split())

@@ -98,6 +98,32 @@ def test_however_many_call_for_help_the_map_stays(server: Server, post: Post, co
     assert commander.map_height >= 0.2 * 768
 
 
+@pytest.mark.parametrize(("width", "height"), [(1366, 768), (1024, 768), (800, 1280), (390, 844)])
+def test_calls_low_air_and_calls_elsewhere_at_once_are_all_told_and_leave_the_map_its_room(
+    server: Server, post: Post, commander: Commander, width: int, height: int
+) -> None:
+    for name in ("Mill", "Barn", "Ship"):
+        heard(post, post.open_incident(name), responder(T0, "far", "F", [1, 1, 0]), alarm(T0, "far"))
+    incident = post.open_incident()
+    crew = [f"ff{at}" for at in range(8)]
+    heard(
+        post,
+        incident,
+        base(T0),
+        *(responder(T0, name, "A", [4 * at, 3, 0]) for at, name in enumerate(crew)),
+        *({"kind": "status", "t": T0, "node": name, "air_bar": 40} for name in crew[:5]),
+        *(alarm(T0, name, text=LUNAR) for name in crew[5:]),
+    )
+    commander.sits_at(width, height)
+    commander.opens(server.url, incident)
+    eventually(lambda: len(commander.banners) == 3 and len(commander.low_on_air) == 5)
+    eventually(lambda: commander.calls_elsewhere)
+    assert commander.map_height >= 0.17 * height
+    assert (commander.off_the_screen, commander.told_out_of_sight) == ([], [])
+    assert "2 more incidents" in commander.words_of_elsewhere
+    assert commander.low_air_heading == "LOW AIR 5"
+
+
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768), (1366, 1024)])
 def test_every_storey_of_a_tower_is_seen_while_somebody_calls_and_hides_nobody(
     server: Server, post: Post, commander: Commander, width: int, height: int

@@ -26,6 +26,25 @@ class WarningsSeen:
         return [" ".join(text.split()) for text in found]
 
     @property
+    def low_air_heading(self) -> str:
+        """What stands before the names."""
+        return self.page.get_by_test_id("low-air-strip").get_by_role("heading").inner_text()
+
+    @property
+    def told_out_of_sight(self) -> list[str]:
+        """Which are not seen: the first call here, the first low on air, the first call elsewhere."""
+        found: list[str] = self.page.evaluate(
+            """() => ['alarm', 'low-on-air', 'call-elsewhere'].filter((what) => {
+              const told = document.querySelector(`[data-testid=${what}]`);
+              const button = told.matches('button') ? told : told.querySelector('button');
+              const {left, right, top, bottom} = button.getBoundingClientRect();
+              return ![top + 8, bottom - 8].every((y) =>
+                button.contains(document.elementFromPoint((left + right) / 2, y)));
+            })"""
+        )
+        return found
+
+    @property
     def low_air_is_loud(self) -> bool:
         """Whether the strip that says so has the colour of a warning."""
         strip = self.page.get_by_test_id("low-air-strip")
