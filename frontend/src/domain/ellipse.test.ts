@@ -1,6 +1,7 @@
 import { describe, expect, test } from "vitest";
-import { ce95, ellipseOf, K95, ve95 } from "./ellipse";
+import { borderOnMap, ce95, ellipseOf, K95, ve95 } from "./ellipse";
 import type { Covariance } from "./types";
+import { FIRST_VIEW, type View } from "./view";
 
 /** The covariance with these standard deviations along and across a direction. */
 function turned(along_m: number, across_m: number, angle_rad: number): Covariance {
@@ -52,4 +53,29 @@ test("no uncertainty is no circular error", () => {
 
 test("the vertical error holds 95 % of a normal error", () => {
   expect(ve95([0, 0, 0, 0, 0, 4])).toBeCloseTo(3.92);
+});
+
+describe("of the border of an ellipse", () => {
+  /** 60 m from west to east, 40 m from south to north. */
+  const map: View = { ...FIRST_VIEW, pixelsPerMetre: 10, width: 600, height: 400 };
+
+  test("all lies on the map where the ellipse does", () => {
+    expect(borderOnMap(map, [5, -5], { major_m: 12, minor_m: 3, angle_rad: 1 })).toBe(1);
+  });
+
+  test("nothing does where the map lies inside the ellipse", () => {
+    expect(borderOnMap(map, [5, -5], { major_m: 200, minor_m: 90, angle_rad: 1 })).toBe(0);
+  });
+
+  test("a half does where the place is at the edge of the map", () => {
+    const share = borderOnMap(map, [30, 0], { major_m: 8, minor_m: 8, angle_rad: 0 });
+    expect(share).toBeGreaterThan(0.45);
+    expect(share).toBeLessThan(0.6);
+  });
+
+  test("only the long sides do of one that is longer than the map", () => {
+    const share = borderOnMap(map, [0, 0], { major_m: 100, minor_m: 5, angle_rad: 0 });
+    expect(share).toBeGreaterThan(0);
+    expect(share).toBeLessThan(0.5);
+  });
 });

@@ -1,5 +1,6 @@
 /** Uncertainty as the commander sees it: the 95 % ellipse, and circular and vertical errors. */
 import type { Covariance } from "./types";
+import { toScreen, type View } from "./view";
 
 /** Scale of the 95 % ellipse: the square root of the 0.95 quantile of chi-squared with two degrees of freedom. */
 export const K95 = 2.448;
@@ -22,6 +23,26 @@ export function ellipseOf([ee, en, , nn]: Covariance): Ellipse {
     minor_m: K95 * Math.sqrt(Math.max(0, mean - spread)),
     angle_rad: Math.atan2(2 * en, ee - nn) / 2,
   };
+}
+
+/** The border is looked at in so many places. */
+const LOOKED_AT = 32;
+
+/** The share of an ellipse's border about a place (east, north; m) that lies on the map, from 0 to 1. */
+export function borderOnMap(
+  view: View,
+  [e_m, n_m]: readonly [number, number, ...number[]],
+  ellipse: Ellipse,
+): number {
+  const [cos, sin] = [Math.cos(ellipse.angle_rad), Math.sin(ellipse.angle_rad)];
+  let seen = 0;
+  for (let at = 0; at < LOOKED_AT; at += 1) {
+    const turn = (2 * Math.PI * at) / LOOKED_AT;
+    const [along, across] = [ellipse.major_m * Math.cos(turn), ellipse.minor_m * Math.sin(turn)];
+    const [x, y] = toScreen(view, e_m + along * cos - across * sin, n_m + along * sin + across * cos);
+    if (x >= 0 && y >= 0 && x <= view.width && y <= view.height) seen += 1;
+  }
+  return seen / LOOKED_AT;
 }
 
 /**

@@ -80,3 +80,10 @@ test("of who calls for help and is not tracked any more it is said that he is no
   const gone = aNode({ level: 1, level_p: 0.99, status: "retired" });
   expect(labelWords(gone, { ...ALL, alarms }).short).toBe("E7-1 MAYDAY · NOT TRACKED 3 s");
 });
+
+test("of whom it is not seen on the map how far off he may be, it is said, also where there is no room", () => {
+  const { whole, short } = labelWords(upstairs, ALL, 196.2);
+  expect(whole).toEqual(["E7-1", "3 s · ± 196 m · Level 1"]);
+  expect(short).toBe("E7-1 · 3 s · ± 196 m");
+  expect(labelWords(upstairs, ALL, 38.8).short).toBe("E7-1 · 3 s · ± 39 m");
+});

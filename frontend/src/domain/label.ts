@@ -3,7 +3,7 @@ import { isLowOnAir } from "./air";
 import { type LevelChoice, levelOf, storeyUnsure, storeyWords } from "./levels";
 import { ageS, type StalenessLimits, statusAt } from "./staleness";
 import type { FrameAlarm, FrameNode, Level } from "./types";
-import { alarmWord, nameInText, nameOf, shortAge, statusWord } from "./words";
+import { alarmWord, nameInText, nameOf, roughly, shortAge, statusWord } from "./words";
 
 export interface Labelled {
   /** Incident time (Unix s). */
@@ -24,9 +24,11 @@ export interface LabelWords {
   readonly short: string;
 }
 
+/** `error_m`: how far off the position may be, where that is not seen on the map. */
 export function labelWords(
   node: FrameNode,
   { now, limits, levels, level, alarms, narrow }: Labelled,
+  error_m: number | null = null,
 ): LabelWords {
   const status = statusAt(node, now, limits);
   const alarm = alarms.get(node.node);
@@ -34,7 +36,8 @@ export function labelWords(
   const callsign = nameInText(nameOf(node));
   const called = alarm ? `${callsign} ${alarmWord(alarm.alarm)}` : callsign;
   const name = isLowOnAir(node) ? `${called} LOW AIR` : called;
-  const old = status === "live" ? age : `${statusWord(status).toUpperCase()} ${age}`;
+  const heard = status === "live" ? age : `${statusWord(status).toUpperCase()} ${age}`;
+  const old = error_m === null ? heard : `${heard} · ± ${roughly(error_m)}`;
   const said = saysStorey(node, level, levels);
   const storey = ` · ${storeyWords(node, levels)}`;
   const short = `${name} · ${old}${said && storeyUnsure(node) ? (narrow ? " · storey?" : storey) : ""}`;

@@ -108,6 +108,11 @@ export function spread(value_m: number): string {
   return value_m > 10_000 ? "over 10 km" : metres(value_m);
 }
 
+/** The same beside a mark, in whole metres: digits that change each moment are not read. */
+export function roughly(value_m: number): string {
+  return value_m > 10_000 ? spread(value_m) : `${Math.max(1, Math.round(value_m))} m`;
+}
+
 /** A distance to one side or the other: "4.0 m S", in one piece where a line breaks. */
 export function sideways(value_m: number, positive: string, negative: string): string {
   return `${metres(Math.abs(value_m))} ${value_m < 0 ? negative : positive}`.replaceAll(" ", "\u00a0");

@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 import { aNode, pictureWith } from "../domain/samples";
 import { FIRST_VIEW, resize, toLocal } from "../domain/view";
-import { labels } from "./labels";
+import { errorNotSeen, labels } from "./labels";
 import type { Scene } from "./layer";
 import { aScene } from "./samples";
 import { scaleBox } from "./scale";
@@ -38,4 +38,13 @@ test("lines of a label lie as far apart as text is large", () => {
   };
   expect(apart(1)).toBeGreaterThan(0);
   expect(apart(2)).toBe(2 * apart(1));
+});
+
+test("how far off somebody may be is for words only where the ellipse does not show it", () => {
+  const errorOf = (sigma_m: number) => {
+    const node = aNode({ covariance_m2: [sigma_m ** 2, 0, 0, sigma_m ** 2, 0, 1] });
+    return errorNotSeen(aScene({ view: VIEW, picture: pictureWith(node) }), { node });
+  };
+  expect(errorOf(2)).toBeNull();
+  expect(errorOf(80)).toBeCloseTo(80 * 2.448, 0);
 });

@@ -1,6 +1,8 @@
 /** Who it is and how old the fix is, of each responder. */
 import { isLowOnAir } from "../domain/air";
+import { borderOnMap, ce95, ellipseOf } from "../domain/ellipse";
 import { labelWords } from "../domain/label";
+import { covarianceAt } from "../domain/staleness";
 import { isNarrow } from "../domain/view";
 import { labelPlaces, nearest, type Spot, type Wanted } from "./label-places";
 import type { Box, Layer, Placed, Scene } from "./layer";
@@ -13,6 +15,9 @@ const NAME_PX = 14;
 const PADDING = 5;
 const BESIDE_PX = 6;
 const MOST_WIDTHS = 4000;
+/** Of whose ellipse less than this share of its border is on the map, it is said in words how far off he may be: a
+ * mark without a border around it looks like one that is sure. */
+const BORDER_SEEN = 0.5;
 
 const widths = new Map<string, number>();
 let before: ReadonlyMap<string, Spot> = new Map();
@@ -70,7 +75,8 @@ interface Label {
 }
 
 function labelOf(context: CanvasRenderingContext2D, scene: Scene, place: Placed): Label {
-  const { whole, short } = labelWords(place.node, { ...scene, narrow: isNarrow(scene.view) });
+  const labelled = { ...scene, narrow: isNarrow(scene.view) };
+  const { whole, short } = labelWords(place.node, labelled, errorNotSeen(scene, place));
   const size = (lines: readonly string[]) => ({
     width: Math.max(...lines.map((line) => widthOf(context, line))) + 2 * PADDING,
     height: lines.length * LINE_PX * scene.view.text + PADDING,
@@ -86,6 +92,15 @@ function labelOf(context: CanvasRenderingContext2D, scene: Scene, place: Placed)
     rank: rankOf(scene, place.node),
   };
   return { place, whole, short, wanted };
+}
+
+/** How far off somebody may be (m), where the map is too small to show it. */
+export function errorNotSeen(scene: Scene, { node }: Pick<Placed, "node">): number | null {
+  const sighting = scene.picture?.nodes.get(node.node);
+  const covariance = sighting && covarianceAt(sighting, scene.now);
+  if (!covariance || node.position_m == null) return null;
+  const seen = borderOnMap(scene.view, node.position_m, ellipseOf(covariance));
+  return seen < BORDER_SEEN ? ce95(covariance) : null;
 }
 
 function urgent(scene: Scene, { node }: Placed): boolean {
