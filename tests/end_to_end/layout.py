@@ -65,10 +65,14 @@ class LayoutSeen:
                 const {left, top, right, bottom} = button.getBoundingClientRect();
                 return left < room.left - 1 || right > room.right + 1
                   || top < room.top - 1 || bottom > room.bottom + 1;
-              }).map((button) => button.querySelector('.name').textContent);
+              }).map((button) => button.textContent.trim());
             }"""
         )
         return found
+
+    def asks_for_the_empty_storeys(self) -> None:
+        """Press the button that shows and hides storeys on which nobody is."""
+        self.page.get_by_test_id("empty-storeys").click()
 
     @property
     def storeys_end(self) -> float:

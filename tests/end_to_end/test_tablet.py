@@ -140,6 +140,36 @@ def test_every_storey_of_a_tower_is_seen_while_somebody_calls_and_hides_nobody(
     eventually(lambda: commander.settled_mark(FIRST_CREW).left > commander.storeys_end)
 
 
+@pytest.mark.parametrize(("width", "height"), [(1366, 768), (1024, 768), (800, 1280)])
+def test_the_storeys_of_a_high_tower_hide_nobody_and_those_where_somebody_is_are_seen(
+    server: Server, post: Post, commander: Commander, width: int, height: int
+) -> None:
+    levels = [
+        {"level": at, "name": f"Floor {at}" if at >= 0 else f"Basement {-at}", "up_m": 3.2 * at}
+        for at in range(-3, 41)
+    ]
+    incident = post.open_incident(levels=levels)
+    west, east = responder(T0, "west", "A", [-30, 2, 0], sigma_m=0.1), responder(T0, "e", "B", [30, 2, 96])
+    others = [responder(T0, f"ff{at}", "B", [at, 2, 9.6 * at], sigma_m=0.1) for at in range(1, 6)]
+    heard(post, incident, base(T0), west, east, *others, alarm(T0, "e", text=LUNAR))
+    commander.sits_at(width, height)
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.banners)
+    occupied = ["All", *(f"Floor {at}" for at in (30, 15, 12, 9, 6, 3, 0))]
+    eventually(lambda: commander.storeys == occupied)
+    assert commander.storeys_out_of_sight == []
+    assert commander.off_the_screen == []
+    eventually(lambda: commander.settled_mark(FIRST_CREW).left > commander.storeys_end)
+
+    commander.asks_for_the_empty_storeys()
+    eventually(lambda: len(commander.storeys) == 45)
+    assert commander.storeys_end < width / 3
+    commander.chooses_storey("Floor 40")
+    assert commander.storey == "Floor 40"
+    commander.asks_for_the_empty_storeys()
+    eventually(lambda: commander.storeys == ["All", "Floor 40", *occupied[1:]])
+
+
 def test_however_long_a_name_is_the_status_and_the_age_are_seen(
     server: Server, post: Post, commander: Commander
 ) -> None:

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { levelButtons, levelOf, neighbourLevel, storeyWords } from "./levels";
+import { levelButtons, levelOf, neighbourLevel, storeysThatFit, storeyWords, withoutEmpty } from "./levels";
 import { aNode, pictureWith, STOREYS } from "./samples";
 
 test("the estimator's word on the storey stands before the height", () => {
@@ -63,4 +63,19 @@ test("going up ends at all storeys, going down at the lowest", () => {
   expect(neighbourLevel(2, 1, buttons)).toBe("all");
   expect(neighbourLevel("all", 1, buttons)).toBe("all");
   expect(neighbourLevel(0, -1, buttons)).toBe(0);
+});
+
+test("where not all storeys have room those stay where somebody is or was, and the chosen one", () => {
+  const buttons = levelButtons(picture, STOREYS, new Set());
+  const names = (room: number, kept: number[] = []) =>
+    withoutEmpty(buttons, room, "all", new Set(kept)).map(({ name }) => name);
+  expect(names(4)).toEqual(["All", "2", "1", "G"]);
+  expect(names(3)).toEqual(["All", "1", "G"]);
+  expect(names(3, [2])).toEqual(["All", "2", "1", "G"]);
+  expect(withoutEmpty(buttons, 3, 2, new Set()).map(({ level }) => level)).toEqual(["all", 2, 1, 0]);
+});
+
+test("as many storeys fit as two columns hold, however low the map is", () => {
+  expect(storeysThatFit({ width: 704, height: 430 })).toBe(14);
+  expect(storeysThatFit({ width: 704, height: 60 })).toBe(2);
 });

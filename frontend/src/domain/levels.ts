@@ -72,6 +72,38 @@ export function levelButtons(
   return [{ level: "all", name: "All", responders: all, alarms: inAlarm.size }, ...storeys];
 }
 
+/** A button and the gap to the next, and what of the map's height is not theirs (CSS pixels). */
+const BUTTON_PX = 50;
+const NOT_THEIRS_PX = 70;
+/** More columns than these would cover the people on the map. */
+const COLUMNS = 2;
+/** On a phone they lie in a row over the head of the map. */
+const ON_A_PHONE = 6;
+const PHONE_PX = 520;
+
+/** How many storey buttons have room on a map of that size (CSS pixels). */
+export function storeysThatFit({ width, height }: { width: number; height: number }): number {
+  if (width <= PHONE_PX) return ON_A_PHONE;
+  return COLUMNS * Math.max(1, Math.floor((height - NOT_THEIRS_PX) / BUTTON_PX));
+}
+
+/**
+ * The buttons for which there is room: of a tower's storeys those that matter. Whoever chooses one that is `kept`
+ * finds it where it was.
+ */
+export function withoutEmpty(
+  buttons: readonly LevelButton[],
+  room: number,
+  chosen: LevelChoice,
+  kept: ReadonlySet<LevelChoice>,
+): readonly LevelButton[] {
+  if (buttons.length <= room) return buttons;
+  return buttons.filter(
+    ({ level, responders, alarms }) =>
+      level === "all" || level === chosen || responders > 0 || alarms > 0 || kept.has(level),
+  );
+}
+
 /** The storey above (+1) or below (-1) the chosen one; "all" lies above the highest. */
 export function neighbourLevel(
   choice: LevelChoice,
