@@ -201,3 +201,20 @@ def test_beside_the_past_as_it_was_shown_stands_what_is_known_now_and_never_besi
     commander.scrubs_to(T0 + 3)
     eventually(lambda: commander.mode == "REPLAY" and commander.board())
     assert commander.known_now == {}
+
+
+def test_long_before_the_end_of_an_incident_the_trail_leads_to_where_somebody_was(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [-10, 2, 0], sigma_m=0.1))
+    heard(post, incident, *(step(T0 + second, "walker", [0.5, 0, 0]) for second in range(1, 41)))
+    for later in (2700, 5400):
+        heard(post, incident, step(T0 + later, "walker", [0, 0, 0]))
+    recorded(post, incident, T0 + 5400)
+    commander.follows_link(server.url, incident, t=T0 + 40)
+    eventually(lambda: commander.mode == "REPLAY" and commander.board()["WALKER"].age_s == 0)
+    mark = commander.settled_mark(FIRST_CREW)
+    eventually(lambda: commander.colour(FIRST_CREW, tolerance=60).left < mark.left - 5 * mark.width)
+    commander.turns_trails_off()
+    eventually(lambda: commander.colour(FIRST_CREW, tolerance=60).left > mark.left - 3 * mark.width)

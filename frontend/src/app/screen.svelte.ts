@@ -13,7 +13,7 @@ import { isMoving, limitsOf, whileUnheard } from "../domain/staleness";
 import { withStoreysAged } from "../domain/storey-age";
 import { toldAt } from "../domain/stretches";
 import { type Extent, extentOf } from "../domain/timeline";
-import { Trails } from "../domain/trails";
+import { Trails, trailsOf } from "../domain/trails";
 import type { DeltaMessage, FrameMessage, Incident, Track } from "../domain/types";
 import { nameOf } from "../domain/words";
 import * as api from "../sources/api";
@@ -23,15 +23,15 @@ import { Asking } from "./asking";
 import { Door, type DoorOwner } from "./door.svelte";
 import { Elsewhere } from "./elsewhere.svelte";
 import { Feed } from "./feed.svelte";
-import { KnownNow } from "./known-now.svelte";
 import { Marks } from "./marks.svelte";
 import { Replay, type ReplayOwner } from "./replay.svelte";
+import { TracksAround } from "./tracks-around.svelte";
 
 const TICK_MS = 250;
 /** Trails are filled with as much of the past when an incident is opened (s). */
 const PAST_S = 1800;
 /** Centimetres are less than a trail's line is wide. */
-const TRAIL_DECIMALS = 2;
+const AS_TRAILS = { view: "live", step: 2, decimals: 2 } as const;
 const COMPARED_DECIMALS = 3;
 
 export class Screen implements DoorOwner, ReplayOwner {
@@ -44,7 +44,7 @@ export class Screen implements DoorOwner, ReplayOwner {
   trail_s = $state(300);
   /** Local monotonic clock at the last tick (ms). */
   localMs = $state(performance.now());
-  readonly trails = new Trails();
+  private readonly walked = new Trails();
   readonly marks = new Marks((node) => {
     const known = this.livePicture?.nodes.get(node);
     return known ? nameOf(known.state) : node;
@@ -68,8 +68,12 @@ export class Screen implements DoorOwner, ReplayOwner {
   });
   readonly door: Door = new Door(this);
   readonly replay: Replay = new Replay(this);
-  readonly compare = new KnownNow((from, to, signal) =>
+  readonly compare = new TracksAround((from, to, signal) =>
     api.tracks(this.incident?.id ?? "", { view: "smoothed", from, to, decimals: COMPARED_DECIMALS }, signal),
+  );
+  /** Where they went before the moment of a replay: what is kept of the present does not reach that far back. */
+  private readonly wentThen = new TracksAround((from, to, signal) =>
+    api.tracks(this.incident?.id ?? "", { ...AS_TRAILS, from, to }, signal),
   );
   private readonly asking = new Asking(this, this.door);
   private readonly elsewhere = new Elsewhere(
@@ -126,6 +130,9 @@ export class Screen implements DoorOwner, ReplayOwner {
   /** Where everybody was at the moment of the past that is shown, as known now; of nobody where that is not wanted. */
   readonly knownNow = $derived(
     knownNow(this.replay.shown ? this.compare.tracks : [], this.picture, this.now, this.levels),
+  );
+  readonly trails = $derived(
+    this.replay.shown && this.wentThen.tracks.length > 0 ? trailsOf(this.wentThen.tracks) : this.walked,
   );
   readonly limits = $derived(
     this.presence === "unheard" ? whileUnheard(limitsOf(this.told)) : limitsOf(this.told),
@@ -200,7 +207,7 @@ export class Screen implements DoorOwner, ReplayOwner {
     this.trackList = [];
     this.selected = node;
     this.level = level;
-    this.trails.clear();
+    this.walked.clear();
     this.earliestT = Number.POSITIVE_INFINITY;
     this.live.follow(new LiveSource(id));
     if (t !== null) this.replay.begin(t, true);
@@ -228,9 +235,17 @@ export class Screen implements DoorOwner, ReplayOwner {
     this.marks.told(incident);
   }
 
+  /** Asks for what belongs to the moment that is shown and has not come yet. */
+  fetch(): void {
+    void this.compare.shows(this.now);
+    this.wentThen.on = this.replay.shown;
+    void this.wentThen.shows(this.now, this.trail_s);
+  }
+
   /** Back to what is now. */
   goLive(): void {
     this.compare.leave();
+    this.wentThen.leave();
     this.replay.end();
   }
 
@@ -248,7 +263,7 @@ export class Screen implements DoorOwner, ReplayOwner {
     this.standing = standingAlarms(message.alarms);
     this.marks.seen(message);
     for (const { node, role, t, position_m } of message.nodes) {
-      if (isMoving(role) && position_m != null) this.trails.add(node, t, position_m);
+      if (isMoving(role) && position_m != null) this.walked.add(node, t, position_m);
     }
   }
 
@@ -262,13 +277,11 @@ export class Screen implements DoorOwner, ReplayOwner {
   private async fillPast(id: string): Promise<void> {
     const last = this.incident?.last_t;
     const list = await api.tracks(id, {
-      view: "live",
-      step: 2,
-      decimals: TRAIL_DECIMALS,
+      ...AS_TRAILS,
       ...(last == null ? {} : { from: Math.max(0, last - PAST_S) }),
     });
     if (this.incident?.id !== id) return;
     this.trackList = list;
-    this.trails.fill(list);
+    this.walked.fill(list);
   }
 }

@@ -93,3 +93,9 @@ export class Trails {
     this.byNode.clear();
   }
 }
+
+export function trailsOf(tracks: readonly Track[]): Trails {
+  const trails = new Trails();
+  trails.fill(tracks);
+  return trails;
+}

@@ -44,6 +44,7 @@ describe("what was drawn of a walk", () => {
     expect(holds({ now: NOON - 60 })).toBe(false);
     expect(holds({ level: 1, levels: STOREYS })).toBe(false);
     expect(holds({ picture: { ...pictureWith(aNode()), incident: "i2" } })).toBe(false);
+    expect(holds({ trails: new Trails() })).toBe(false);
     trails.fill([]);
     expect(holds({})).toBe(false);
     trails.version -= 1;

@@ -1,6 +1,6 @@
 /** Where each responder went, for as long back as was chosen; older parts are fainter. */
 import { markOf } from "../domain/crews";
-import type { Trail } from "../domain/trails";
+import type { Trail, Trails } from "../domain/trails";
 import { toScreen, type View } from "../domain/view";
 import type { Layer, Scene } from "./layer";
 import { movers } from "./place";
@@ -37,6 +37,7 @@ export interface Walked {
   readonly view: View;
   readonly now: number;
   readonly incident: string | undefined;
+  readonly trails: Trails;
   /** Whose trails, and how they look. */
   readonly shown: string;
 }
@@ -66,7 +67,7 @@ export function walkedOf(scene: Scene): Walked {
     elsewhere ? [] : [node.node + markOf(node, scene.crews).colour],
   );
   const shown = [scene.trail_s, scene.trails.version, scene.selected, ...people].join(" ");
-  return { view: scene.view, now: scene.now, incident: scene.picture?.incident, shown };
+  return { view: scene.view, now: scene.now, incident: scene.picture?.incident, trails: scene.trails, shown };
 }
 
 /**
@@ -77,6 +78,7 @@ export function walkedOf(scene: Scene): Walked {
 export function stillHolds(drawn: Walked, wanted: Walked, trail_s: number, moving: boolean): boolean {
   const later_s = wanted.now - drawn.now;
   if (later_s < 0 || later_s > KEPT * trail_s || drawn.incident !== wanted.incident) return false;
+  if (drawn.trails !== wanted.trails) return false;
   return moving || (drawn.view === wanted.view && drawn.shown === wanted.shown);
 }
 

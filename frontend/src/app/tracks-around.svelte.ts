@@ -1,4 +1,4 @@
-/** The tracks as known now, beside a replay: asked for when they are wanted, a stretch of time at once. */
+/** Tracks for a replay, around the moment that is shown: asked for when they are wanted, a stretch of time at once. */
 import type { Track } from "../domain/types";
 import { RequestFailed } from "../sources/api";
 
@@ -8,11 +8,11 @@ const REACH_S = 900;
 const AGAIN_MS = 3000;
 const TOO_SLOW = 504;
 
-/** @returns the smoothed tracks between two moments (Unix s) */
+/** @returns the tracks between two moments (Unix s) */
 export type AskTracks = (from: number, to: number, signal: AbortSignal) => Promise<Track[]>;
 
-export class KnownNow {
-  /** It is wanted. */
+export class TracksAround {
+  /** They are wanted. */
   on = $state(false);
   tracks = $state.raw<readonly Track[]>([]);
   /** The server works it out. */
@@ -40,14 +40,19 @@ export class KnownNow {
     this.loaded = { from: 0, to: 0 };
   }
 
-  /** A moment is shown (Unix s): asks for what is around it where it is wanted and not there. */
-  async shows(t: number): Promise<void> {
+  /**
+   * A moment is shown (Unix s): asks for what is around it where it is wanted and not there.
+   *
+   * @param lead_s what is shown of the time before each moment (s).
+   */
+  async shows(t: number, lead_s = 0): Promise<void> {
     const { from, to } = this.loaded;
-    if (!this.on || this.busy || this.trouble !== null || (t >= from && t < to)) return;
+    if (!this.on || this.busy || this.trouble !== null || (t - lead_s >= from && t < to)) return;
     this.busy = true;
     const asking = new AbortController();
     this.asking = asking;
-    const stretch = { from: Math.max(0, Math.floor(t) - REACH_S), to: Math.floor(t) + REACH_S };
+    const now = Math.floor(t);
+    const stretch = { from: Math.max(0, now - REACH_S - lead_s), to: now + REACH_S };
     try {
       const tracks = await this.patiently(stretch, asking.signal);
       if (asking.signal.aborted) return;

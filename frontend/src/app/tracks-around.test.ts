@@ -3,14 +3,14 @@ import type { Track } from "../domain/types";
 
 vi.stubGlobal("window", { location: { origin: "http://screen" } });
 const { RequestFailed } = await import("../sources/api");
-const { KnownNow } = await import("./known-now.svelte");
+const { TracksAround } = await import("./tracks-around.svelte");
 
 const TRACKS: Track[] = [{ node: "ff1", points: [] }];
 
 /** A server that answers as a test says; what it was asked for. */
 function asking(...answers: (() => Promise<Track[]>)[]) {
   const asked: [from: number, to: number][] = [];
-  const known = new KnownNow((from, to) => {
+  const known = new TracksAround((from, to) => {
     asked.push([from, to]);
     return answers[Math.min(asked.length, answers.length) - 1]?.() ?? Promise.reject(new Error("unasked"));
   }, 0);
@@ -61,4 +61,19 @@ test("what comes after it is not wanted any more is not shown", async () => {
   answer(TRACKS);
   await asked;
   expect([known.on, known.busy, known.tracks]).toEqual([false, false, []]);
+});
+
+test("what is shown of the time before a moment is asked for with it, and anew where more of it is wanted", async () => {
+  const { asked, known } = asking(async () => TRACKS);
+  known.toggle();
+  for (const [t, lead_s] of [
+    [5000, 300],
+    [4200, 300],
+    [4200, 1800],
+  ] as const)
+    await known.shows(t, lead_s);
+  expect(asked).toEqual([
+    [3800, 5900],
+    [1500, 5100],
+  ]);
 });
