@@ -60,6 +60,12 @@ class PastCompared:
         return found
 
     @property
+    def not_the_end(self) -> str:
+        """What is said of a closed incident whose end is not known yet; nothing where it is."""
+        said = self.page.get_by_test_id("unfinished")
+        return " ".join(said.inner_text().split()) if said.count() else ""
+
+    @property
     def storeys(self) -> list[str]:
         """The names on the storey buttons."""
         return self.page.get_by_test_id("storeys").locator(".name").all_inner_texts()

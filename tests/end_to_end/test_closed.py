@@ -1,10 +1,11 @@
 """A closed incident is not live, and says so."""
 
 import time
+from pathlib import Path
 
 from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import alarm, base, heard, one_inside, recorded, responder, step
-from tests.running import Post, Server, eventually
+from tests.running import Post, Server, eventually, running
 
 T0 = 1_763_712_345.0
 
@@ -105,3 +106,24 @@ def test_the_alarms_of_the_past_are_marked_though_they_are_over(
     commander.opens(server.url, incident)
     eventually(lambda: commander.event_marks == ["MAYDAY WALKER"])
     assert commander.banners == []
+
+
+def test_of_a_closed_incident_that_is_not_worked_out_to_its_end_that_is_said(
+    tmp_path: Path, commander: Commander
+) -> None:
+    with running(tmp_path / "data", "--no-worker") as server:
+        post = Post(server.url)
+        incident = post.open_incident()
+        post.telemetry(
+            incident, "all", [base(T0), responder(T0, "walker", "A", [2, 2, 0]), alarm(T0, "walker")]
+        )
+        close(post, incident)
+        commander.page.goto(f"{server.url}/#incident={incident}")
+        eventually(lambda: commander.mode == "CLOSED")
+        eventually(lambda: "an alarm may be missing" in commander.not_the_end)
+
+        server.stop()
+        server.options.clear()
+        server.start().until_it_computes()
+        eventually(lambda: commander.banners and commander.board()["WALKER"].status == "Was live")
+        eventually(lambda: commander.not_the_end == "")

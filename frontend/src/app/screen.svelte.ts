@@ -54,6 +54,8 @@ export class Screen implements DoorOwner, ReplayOwner {
   private earliestT = $state(Number.POSITIVE_INFINITY);
   /** The incident whose past is read as soon as its present is seen. */
   private pastOf: string | null = null;
+  /** The newest entry of the log that is in the live picture. */
+  private foldedSeq = $state(0);
   /** What the address named when the page was opened. */
   private readonly wanted = $state.raw<DeepLink>(NOTHING);
 
@@ -62,7 +64,10 @@ export class Screen implements DoorOwner, ReplayOwner {
     onward: true,
     rate: () => (this.incident?.clock === "live" && this.incident.state === "active" ? 1 : 0),
     changed: (message) => this.liveChanged(message),
-    heartbeat: ({ seq }) => this.asking.heartbeat(seq),
+    heartbeat: ({ seq }) => {
+      this.foldedSeq = seq;
+      this.asking.heartbeat(seq);
+    },
     lost: () => void this.door.refresh().catch((cause) => this.door.fail(cause)),
     back: () => void this.door.refresh().catch((cause) => this.door.fail(cause)),
   });
@@ -106,6 +111,10 @@ export class Screen implements DoorOwner, ReplayOwner {
     this.incident === null ? null : ([this.live, this.replay.feed].find((feed) => feed.isLost)?.link ?? null),
   );
   readonly closed = $derived(this.incident?.state === "closed");
+  /** It has ended, and what was reported before that is still being worked out: what is shown is not its end. */
+  readonly unfinished = $derived(
+    this.closed && this.live.picture !== null && this.foldedSeq < (this.incident?.last_seq ?? 0),
+  );
   readonly recorded = $derived(this.incident?.clock === "recorded");
   readonly showsPresent = $derived(this.live.picture !== null);
   /** What the live picture tells is of now. */
@@ -260,6 +269,7 @@ export class Screen implements DoorOwner, ReplayOwner {
       void this.readPast(this.incident).catch((cause) => this.door.fail(cause));
     }
     if (message.nodes.length > 0) this.earliestT = Math.min(this.earliestT, message.clock_t);
+    this.foldedSeq = message.seq;
     this.standing = standingAlarms(message.alarms);
     this.marks.seen(message);
     for (const { node, role, t, position_m } of message.nodes) {
