@@ -178,6 +178,26 @@ class LayoutSeen:
         return found
 
     @property
+    def words_are_under_the_caller(self) -> bool:
+        """Whether what the first alarm says begins under who calls, at the left edge of the alarm."""
+        under: bool = self.page.get_by_test_id("alarm").first.evaluate(
+            """(alarm) => {
+              const box = (part) => alarm.querySelector(part).getBoundingClientRect();
+              const [who, words] = [box('.who'), box('p')];
+              const seen = Math.max(...[...alarm.querySelectorAll('.who > *')].map(
+                (part) => part.getBoundingClientRect().bottom));
+              return words.top >= Math.max(who.bottom, seen) - 1 && Math.abs(words.left - who.left) < 2;
+            }"""
+        )
+        return under
+
+    @property
+    def help_begins_at_its_head(self) -> bool:
+        """Whether the head of the help sheet is seen without scrolling."""
+        head = self.page.get_by_role("dialog").get_by_role("heading").bounding_box()
+        return head is not None and head["y"] >= 0
+
+    @property
     def reads_help(self) -> bool:
         """Whether the help sheet lies over everything."""
         return self.page.get_by_role("dialog").is_visible()

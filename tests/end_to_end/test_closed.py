@@ -3,6 +3,8 @@
 import time
 from pathlib import Path
 
+import pytest
+
 from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import alarm, base, heard, one_inside, recorded, responder, step
 from tests.running import Post, Server, eventually, running
@@ -127,3 +129,22 @@ def test_of_a_closed_incident_that_is_not_worked_out_to_its_end_that_is_said(
         server.start().until_it_computes()
         eventually(lambda: commander.banners and commander.board()["WALKER"].status == "Was live")
         eventually(lambda: commander.not_the_end == "")
+
+
+@pytest.mark.parametrize(("width", "height"), [(1024, 768), (390, 844)])
+def test_what_was_said_stands_under_who_called_also_when_it_is_over(
+    server: Server, post: Post, commander: Commander, width: int, height: int
+) -> None:
+    incident = post.open_incident()
+    caller = responder(T0, "caller", "A", [2, 2, 0]) | {"callsign": "Hauptlöschgruppenführer Schwarzenberg"}
+    told = {"kind": "status", "t": T0, "node": "caller", "air_bar": 40}
+    heard(post, incident, base(T0), caller, told, alarm(T0, "caller", text="I lie under a shelf. " * 8))
+    heard(post, incident, responder(T0 + 200, "ff2", "A", [4, 2, 0]))
+    commander.sits_at(width, height)
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.banners)
+    assert commander.words_are_under_the_caller
+    close(post, incident)
+    eventually(lambda: commander.mode == "CLOSED", within_s=15)
+    assert commander.words_are_under_the_caller
+    assert (commander.cut_off(), commander.off_the_screen) == ([], [])

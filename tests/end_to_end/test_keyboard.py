@@ -46,8 +46,10 @@ def test_the_keys_pause_step_select_and_choose_storeys(
 
     commander.presses("t")
     eventually(lambda: commander.theme == "dusk")
+    commander.sits_at(1024, 600)
     commander.presses("?")
     commander.page.get_by_role("dialog").wait_for()
+    assert commander.help_begins_at_its_head
     commander.presses("Escape")
     commander.page.get_by_role("dialog").wait_for(state="hidden")
 
