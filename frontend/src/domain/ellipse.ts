@@ -25,24 +25,24 @@ export function ellipseOf([ee, en, , nn]: Covariance): Ellipse {
   };
 }
 
-/** The border is looked at in so many places. */
-const LOOKED_AT = 32;
+/** The border is looked at in so many places: their directions, worked out once for all frames of the screen. */
+const LOOKED_AT = Array.from({ length: 32 }, (_, at) => (2 * Math.PI * at) / 32).map(
+  (turn) => [Math.cos(turn), Math.sin(turn)] as const,
+);
 
 /** The share of an ellipse's border about a place (east, north; m) that lies on the map, from 0 to 1. */
 export function borderOnMap(
   view: View,
   [e_m, n_m]: readonly [number, number, ...number[]],
-  ellipse: Ellipse,
+  { major_m, minor_m, angle_rad }: Ellipse,
 ): number {
-  const [cos, sin] = [Math.cos(ellipse.angle_rad), Math.sin(ellipse.angle_rad)];
-  let seen = 0;
-  for (let at = 0; at < LOOKED_AT; at += 1) {
-    const turn = (2 * Math.PI * at) / LOOKED_AT;
-    const [along, across] = [ellipse.major_m * Math.cos(turn), ellipse.minor_m * Math.sin(turn)];
-    const [x, y] = toScreen(view, e_m + along * cos - across * sin, n_m + along * sin + across * cos);
-    if (x >= 0 && y >= 0 && x <= view.width && y <= view.height) seen += 1;
-  }
-  return seen / LOOKED_AT;
+  const [cos, sin] = [Math.cos(angle_rad), Math.sin(angle_rad)];
+  const seen = LOOKED_AT.filter(([along, across]) => {
+    const [a_m, b_m] = [major_m * along, minor_m * across];
+    const [x, y] = toScreen(view, e_m + a_m * cos - b_m * sin, n_m + a_m * sin + b_m * cos);
+    return x >= 0 && y >= 0 && x <= view.width && y <= view.height;
+  });
+  return seen.length / LOOKED_AT.length;
 }
 
 /**
