@@ -15,6 +15,12 @@ from backend.log.incident import Incident
 BEHIND_AFTER_S = 5.0
 """An entry of the log that is not in the picture for longer is told of: an alarm may be in it."""
 
+AHEAD_S = 10.0
+"""Nothing is newer than when it came: a picture that is, has been made before the clock was put back."""
+
+NOT_YET = "What was last reported is not in this picture yet: the worker is behind, or there is none."
+PUT_BACK = "The server's clock was put back since this picture was made: check it, and the gateways' clocks."
+
 _encode = msgspec.json.Encoder().encode
 
 
@@ -143,11 +149,12 @@ class Channel:
     def frame(self, server_t: float) -> Frame:
         """The frame of this moment."""
         frame = present(self.record, self.seq, self.now(server_t), self.incident)
-        if not self.behind(server_t):
-            return frame
-        text = "What was last reported is not in this picture yet: the worker is behind, or there is none."
-        notice = FrameNotice(code="estimator_behind", t=frame.t, text=text, node=None)
-        return msgspec.structs.replace(frame, notices=(*frame.notices, notice))
+        notices = list(frame.notices)
+        if self.behind(server_t):
+            notices.append(FrameNotice(code="estimator_behind", t=frame.t, text=NOT_YET, node=None))
+        if frame.newest_t is not None and frame.newest_t > frame.t + AHEAD_S:
+            notices.append(FrameNotice(code="clock_behind", t=frame.t, text=PUT_BACK, node=None))
+        return msgspec.structs.replace(frame, notices=tuple(notices))
 
     def behind(self, server_t: float) -> bool:
         """Whether an entry of the log has not been in the picture for too long."""

@@ -67,6 +67,19 @@ def grown(covariance_m2: Covariance6, role: Role, age_s: float) -> Covariance6:
     return ee + horizontal, en, eu, nn + horizontal, nu, uu + vertical
 
 
+def age_s(known: RecordNode, t: float) -> float:
+    """How old a node's newest reading is at a moment (s).
+
+    Nothing is newer than when it came: what is of the future then is by a clock that was put back since, and
+    how old it is nobody knows. It is not called new.
+
+    Args:
+        known: the node.
+        t: the moment, Unix seconds.
+    """
+    return abs(t - known.t)
+
+
 def covariance_at(known: RecordNode, t: float) -> Covariance6 | None:
     """The covariance of a node's position as it is shown at a moment (m²).
 
@@ -76,7 +89,7 @@ def covariance_at(known: RecordNode, t: float) -> Covariance6 | None:
     """
     if known.covariance_m2 is None or known.retired:
         return known.covariance_m2
-    return grown(known.covariance_m2, known.role, t - known.t)
+    return grown(known.covariance_m2, known.role, age_s(known, t))
 
 
 def turn_back_bar(known: RecordNode, settings: IncidentSettings) -> float | None:
@@ -126,7 +139,7 @@ def present_node(known: RecordNode, now: float, settings: IncidentSettings, floo
         level=None if storey is None else storey.level,
         level_p=None if storey is None else storey.probability,
         t=known.t,
-        status=status_of(known.role, now - known.t, settings, retired=known.retired),
+        status=status_of(known.role, age_s(known, now), settings, retired=known.retired),
         battery=known.battery,
         air_bar=known.air_bar,
         temperature_c=known.temperature_c,
@@ -192,7 +205,7 @@ def _set_aside_at(record: PictureRecord, now: float, settings: IncidentSettings)
             continue
         known = nodes.get(aside.name)
         if known is not None:
-            status = status_of(known.role, now - known.t, settings, retired=known.retired)
+            status = status_of(known.role, age_s(known, now), settings, retired=known.retired)
             if status == "retired" or (status == "live" and known.position_m is not None):
                 continue
         yield FrameAside(

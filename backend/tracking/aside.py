@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator
+from typing import TypeVar
 
 import msgspec
 
@@ -10,14 +11,16 @@ from backend.log.engine import make_engine
 from backend.log.read import SqlLogReader
 from backend.tracking.fold import IncidentFold, OtherState
 from backend.tracking.heads import Head
+from backend.tracking.put_back import on_one_clock
 from backend.tracking.reading import Decoded, read_block
 from estimator import trackers
 from estimator.estimate import Relative, TrackPoint
-from estimator.evidence import Advice, Evidence
+from estimator.evidence import Advice, Evidence, Measurement
 from estimator.measurements import AnyReading
 from estimator.measurements.imu import Imu, told_until
 
 Smoothed = dict[str, list[TrackPoint]]
+OfAnEpoch = TypeVar("OfAnEpoch", TrackPoint, Evidence, Measurement)
 
 _decode = msgspec.msgpack.Decoder(Smoothed).decode
 
@@ -35,7 +38,10 @@ def smooth_log(database_url: str, head: Head) -> bytes:
     Raises:
         LogUnreadable: the database failed.
     """
-    smoothed = trackers.smoother(head.tracker, head.settings).smooth(_whole_log(database_url, head))
+    readings, ahead_s = _whole_log(database_url, head)
+    smoothed = trackers.smoother(head.tracker, head.settings).smooth(readings)
+    if ahead_s:
+        smoothed = {node: [_earlier(point, ahead_s) for point in track] for node, track in smoothed.items()}
     return msgspec.msgpack.encode(smoothed)
 
 
@@ -62,11 +68,13 @@ def evidence_of_log(database_url: str, head: Head, node: str, t: float | None) -
         NotFound: no reading up to that moment names the node.
         LogUnreadable: the database failed.
     """
-    readings = _known_by(_whole_log(database_url, head), math.inf if t is None else t)
+    readings, ahead_s = _whole_log(database_url, head)
+    known = _known_by(readings, math.inf if t is None else t + ahead_s)
     try:
-        return trackers.evidence(head.tracker, head.settings, readings, node)
+        evidence = trackers.evidence(head.tracker, head.settings, known, node)
     except KeyError as error:
         raise _not_named(node, t) from error
+    return evidence if evidence is None or not ahead_s else _told_earlier(evidence, ahead_s)
 
 
 def advice_of_log(database_url: str, head: Head, node: str) -> Advice | None:
@@ -84,7 +92,7 @@ def advice_of_log(database_url: str, head: Head, node: str) -> Advice | None:
         NotFound: no reading names the node.
         LogUnreadable: the database failed.
     """
-    readings = _whole_log(database_url, head)
+    readings, _ = _whole_log(database_url, head)
     try:
         return trackers.advice(head.tracker, head.settings, readings, node)
     except KeyError as error:
@@ -102,12 +110,28 @@ def _not_named(node: str, t: float | None) -> NotFound:
     return NotFound(f"No reading of this incident has named {node!r} {when}.")
 
 
-def _whole_log(database_url: str, head: Head) -> list[AnyReading]:
+def _whole_log(database_url: str, head: Head) -> tuple[list[AnyReading], int]:
+    """All readings on one clock, and by how much it is ahead of the server's in the end (s)."""
     engine = make_engine(database_url)
     try:
-        return [reading for _, readings in _entries(SqlLogReader(engine), head) for reading in readings]
+        return on_one_clock(_entries(SqlLogReader(engine), head), head.live)
     finally:
         engine.dispose()
+
+
+def _told_earlier(evidence: Evidence, by_s: float) -> Evidence:
+    return _earlier(
+        msgspec.structs.replace(
+            evidence,
+            held=[_earlier(one, by_s) for one in evidence.held],
+            rejected=[_earlier(one, by_s) for one in evidence.rejected],
+        ),
+        by_s,
+    )
+
+
+def _earlier(part: OfAnEpoch, by_s: float) -> OfAnEpoch:
+    return msgspec.structs.replace(part, t=part.t - by_s)
 
 
 def _entries(reader: SqlLogReader, head: Head) -> Iterator[Decoded]:

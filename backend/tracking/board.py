@@ -122,13 +122,15 @@ class Board(msgspec.Struct):
     def notice(self, notices: Iterable[Notice]) -> None:
         """Take in what the tracker has noticed; a notice replaces the last of its code and node."""
         for notice in notices:
-            key = (notice.code, notice.node)
-            self.notices = [kept for kept in self.notices if (kept.code, kept.node) != key]
-            self.notices.append(
-                RecordNotice(code=notice.code, t=notice.t, text=notice.text, node=notice.node)
-            )
+            self.tell(RecordNotice(code=notice.code, t=notice.t, text=notice.text, node=notice.node))
             if notice.code == "node_moved" and notice.node is not None:
                 self._node(notice.node, notice.t).moved_t = notice.t
+
+    def tell(self, notice: RecordNotice) -> None:
+        """Have a notice shown, in place of the last of its code and node."""
+        key = (notice.code, notice.node)
+        self.notices = [kept for kept in self.notices if (kept.code, kept.node) != key]
+        self.notices.append(notice)
         del self.notices[:-NOTICES_KEPT]
 
     def _node(self, node: str, t: float) -> NodeBoard:

@@ -8,9 +8,10 @@ import msgspec
 
 from backend.live import record
 from backend.live.past import SHOWN_WITHIN_S
-from backend.live.record import PictureRecord
+from backend.live.record import PictureRecord, RecordNotice
 from backend.log.base import LoggedBatch, RecordedFrame
 from backend.tracking.board import Board
+from backend.tracking.put_back import GoingOn
 from backend.tracking.recorder import pieces, row_of
 from estimator import trackers
 from estimator.estimate import Relative
@@ -42,6 +43,7 @@ class State(msgspec.Struct, frozen=True, array_like=True):
         estimator: the tracker's own state.
         stood: see `IncidentFold`.
         begun: see `IncidentFold`.
+        clock: see `IncidentFold`.
     """
 
     version: int
@@ -54,6 +56,7 @@ class State(msgspec.Struct, frozen=True, array_like=True):
     estimator: bytes
     stood: int | None = None
     begun: float = 0.0
+    clock: GoingOn = msgspec.field(default_factory=GoingOn)
 
 
 class _Version(msgspec.Struct, frozen=True, array_like=True):
@@ -88,6 +91,7 @@ class IncidentFold:
         seq: newest log entry folded, or begun.
         whole: it is folded to its end.
         received: when the newest one with readings came, Unix seconds.
+        clock: by which `newest_t`, `stood` and `begun` are told: the server's, but that it is never put back.
         newest_t: incident time, Unix seconds.
         row: newest second whose row was made; None: none since the beginning, or since it was restored.
         stood: newest second whose row is what stood on the screens until something came later; None: none.
@@ -105,6 +109,7 @@ class IncidentFold:
         self.seq = 0
         self.whole = True
         self.received = 0.0
+        self.clock = GoingOn()
         self.newest_t: float | None = None
         self.row: int | None = None
         self.stood: int | None = None
@@ -122,8 +127,12 @@ class IncidentFold:
         """
         self.whole = False
         self._asked = self._tracker
-        known_t = batch.received if self._live else math.inf
-        readings = _alarms_heard(readings, batch.received if self._live else batch.sent)
+        if self._live:
+            self._hear(batch, readings)
+            readings = self.clock.of(readings)
+        came_t = batch.received + self.clock.ahead_s
+        known_t = came_t if self._live else math.inf
+        readings = _alarms_heard(readings, came_t if self._live else batch.sent)
         if readings and (stood := self.stands(batch.received)) is not None:
             # The second may go on in what comes now, and would be recorded as of when that came.
             yield stood
@@ -135,23 +144,31 @@ class IncidentFold:
             self._board.fold(piece.readings, known_t)
             self.newest_t = piece.newest_t
             if self._second != second:
-                self.begun = batch.received
+                self.begun = came_t
             self._picture = None
             self.seq, self.received = batch.seq, batch.received
             yield row
         if batch.rejected:
-            came_t = batch.received if self._live else _first_known(self.newest_t, batch.sent, batch.received)
+            if not self._live:
+                came_t = _first_known(self.newest_t, batch.sent, batch.received)
             self._board.set_aside(batch, came_t, readings)
             self._picture = None
         self.seq = batch.seq
         self.whole = True
 
+    def _hear(self, batch: LoggedBatch, readings: Sequence[AnyReading]) -> None:
+        back_s = self.clock.hear(batch.received, readings, self.newest_t)
+        if back_s:
+            text = f"The server's clock was put back by {back_s} s: times told before were by that clock."
+            t = batch.received + self.clock.ahead_s
+            self._board.tell(RecordNotice(code="clock_put_back", t=t, text=text))
+
     def stands(self, until: float) -> RecordedFrame | None:
         """The row of what stood on the screens until a moment (Unix s) at which it is told otherwise."""
-        second = self._second
-        if not self._live or second is None or not self._stood_long(second, until):
+        second, until_t = self._second, until + self.clock.ahead_s
+        if not self._live or second is None or not self._stood_long(second, until_t):
             return None
-        self.stood, self.begun = second, until
+        self.stood, self.begun = second, until_t
         self._asked = self._tracker
         return self._made(second)
 
@@ -175,7 +192,7 @@ class IncidentFold:
         second = self._second
         if second is None or not self._live:
             return second
-        return max(second, self.received - SHOWN_WITHIN_S)
+        return max(second - self.clock.ahead_s, self.received - SHOWN_WITHIN_S)
 
     @property
     def _second(self) -> int | None:
@@ -187,7 +204,7 @@ class IncidentFold:
         # Here and nowhere else: when a picture is published depends on the wall clock, rows do not.
         self._board.notice(self._tracker.take_notices())
         self._picture = None
-        self.row = second
+        self.row = second - self.clock.ahead_s
         return self._row(second)
 
     def prepare(self) -> None:
@@ -211,7 +228,8 @@ class IncidentFold:
     def picture(self) -> PictureRecord:
         """What is known now."""
         if self._picture is None:
-            self._picture = self._board.picture(self._asked.estimates(), self.newest_t)
+            picture = self._board.picture(self._asked.estimates(), self.newest_t)
+            self._picture = self.clock.told(picture)
         return self._picture
 
     def last_row(self) -> RecordedFrame | None:
@@ -221,7 +239,10 @@ class IncidentFold:
 
     def _row(self, second: int) -> RecordedFrame:
         return RecordedFrame(
-            second=second, seq=self.seq, received=self.received, record=record.encode(self.picture())
+            second=second - self.clock.ahead_s,
+            seq=self.seq,
+            received=self.received,
+            record=record.encode(self.picture()),
         )
 
     def relative(self, a: str, b: str) -> Relative | None:
@@ -246,6 +267,7 @@ class IncidentFold:
                 self._tracker.snapshot(),
                 self.stood,
                 self.begun,
+                self.clock,
             )
         )
 
@@ -270,5 +292,5 @@ class IncidentFold:
         fold._tracker = fold._asked = restored
         fold._board = state.board
         fold.seq, fold.received, fold.newest_t = state.seq, state.received, state.newest_t
-        fold.stood, fold.begun = state.stood, state.begun
+        fold.stood, fold.begun, fold.clock = state.stood, state.begun, state.clock
         return fold

@@ -226,7 +226,7 @@ class Follower:
         """Fold; after each step, tell whether what was begun is folded whole."""
         for row, whole in steps:
             if row is not None:
-                self._keeper.take(row)
+                self._keeper.take(row, put_back=self._fold.clock.ahead_s > 0)
             yield whole
 
     async def _show(self, *, last: bool = False) -> None:
@@ -270,7 +270,7 @@ class Follower:
         fold, made_with = self._fold, self._course.made_with
         row = fold.last_row()
         if row is not None:
-            self._keeper.take(row)
+            self._keeper.take(row, put_back=fold.clock.ahead_s > 0)
         return Snapshot(seq=fold.seq, state=fold.state(), made_with=made_with.encoded())
 
     async def _settle(self) -> bool:

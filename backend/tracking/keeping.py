@@ -46,9 +46,14 @@ class Keeper:
         self._pause_s = 0.0
         self.snapshot_at = at
 
-    def take(self, row: RecordedFrame) -> None:
-        """Have a row stored; it replaces one of the same second."""
-        if self._settled is not None and row.second < self._settled:
+    def take(self, row: RecordedFrame, *, put_back: bool = False) -> None:
+        """Have a row stored; it replaces one of the same second.
+
+        Args:
+            row: it is.
+            put_back: the server's clock was put back before it: rows of later seconds may be older.
+        """
+        if not put_back and self._settled is not None and row.second < self._settled:
             return
         self._waiting[row.second] = row
         self._bytes += len(row.record)

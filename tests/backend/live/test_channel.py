@@ -213,3 +213,10 @@ def test_a_screen_that_waits_is_told_as_soon_as_the_picture_is_behind(channel: C
     channel.waiting = Waiting(oldest=4, since_t=0.0, newest=4)
     channel.show(BEHIND_AFTER_S + 1)
     assert [notice["code"] for notice in tablet.messages[-1]["notices"]] == ["estimator_behind"]
+
+
+def test_a_picture_that_is_ahead_of_a_clock_that_was_put_back_says_so(channel: Channel) -> None:
+    channel.incident = channel.incident.model_copy(update={"clock": "live"})
+    channel.take(3, at(0.0, 3700.0))
+    told = [[notice.code for notice in channel.frame(now).notices] for now in (100.0, 3689.0, 3700.0)]
+    assert told == [["clock_behind"], ["clock_behind"], []]

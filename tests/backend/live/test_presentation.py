@@ -45,6 +45,13 @@ def test_a_responder_is_live_then_stale_then_lost() -> None:
     assert at == {0.0: "live", 10.0: "live", 10.1: "stale", 60.0: "stale", 60.1: "lost"}
 
 
+def test_who_is_of_the_future_since_the_clock_was_put_back_is_not_called_live(incident: Make) -> None:
+    shown = present(PictureRecord(t=3700.0, nodes=(responder(t=3700.0),)), 1, 100.0, incident()).nodes[0]
+    assert shown.status == "lost"
+    assert shown.covariance_m2 is not None
+    assert shown.covariance_m2[0] > 1000.0**2
+
+
 def test_a_breadcrumb_is_given_more_time_than_a_responder() -> None:
     settings = IncidentSettings()
     assert status_of("breadcrumb", 59.0, settings, retired=False) == "live"

@@ -102,6 +102,14 @@ def test_seconds_that_were_shown_already_stay_as_they_were(keeper: Callable[...,
     assert not keeping.empty
 
 
+def test_seconds_after_the_clock_was_put_back_are_stored_though_later_ones_are(
+    keeper: Callable[..., Keeper],
+) -> None:
+    keeping = keeper(settled=10)
+    keeping.take(row(9), put_back=True)
+    assert not keeping.empty
+
+
 def test_folding_waits_where_too_much_waits_to_be_stored(keeper: Callable[..., Keeper]) -> None:
     keeping = keeper()
     assert not keeping.full
