@@ -136,12 +136,32 @@ def pulling_of(problem: Problem, solved: Solved, told: Told) -> list[Delay]:
     right = common(problem, solved, told, np.array(asked))
     of_keyframes = right[:size].reshape(layout.length, layout.width, -1)
     taken = solved.chain.explained(of_keyframes, right[size:])
-    found = []
+    worth, found = _worth(problem, solved, told), []
     for i, radio in enumerate(asked):
         own = slice(2 * i, 2 * i + 2)
         left = np.diag(told.told[radio]) - taken.information[own, own]
-        found.append(judged(told.radios[radio], told.score[radio] - taken.score[own], left))
+        score = told.score[radio] - taken.score[own]
+        found.append(judged(told.radios[radio], worth[radio] * score, worth[radio] * left))
     return [one for one in found if one is not None]
+
+
+def _worth(problem: Problem, solved: Solved, told: Told) -> Array:
+    """What the ranges of each radio are worth, of what they would be did each err by itself.
+
+    What lasts while nobody moves the estimate follows, and no residual shows it: k ranges of variance w that
+    share one of c are worth k / (w + k c).
+    """
+    rows, known, shared_m2 = problem.rows, told.carried >= 0, np.zeros(len(told.ranges))
+    sources = rows.pairs[told.ranges, 6].astype(np.intp)
+    for source in np.unique(sources).tolist():
+        shared_m2[sources == source] = _own_m2(reported_as(problem.layout.state.sources[source]))
+    more = 1.0 + rows.alike[told.ranges] * shared_m2 / rows.sigma[told.ranges] ** 2
+    weight = solved.weighted.information[told.ranges]
+    single, together = (
+        np.bincount(told.carried[known], np.repeat(each, 2).reshape(-1, 2)[known], len(told.radios))
+        for each in (weight, weight * more)
+    )
+    return np.asarray(single / np.maximum(together, NOTHING))
 
 
 def judged(radio: Radio, score: Array, left: Array) -> Delay | None:
@@ -201,6 +221,11 @@ def _variances_m2(radio: Radio) -> tuple[float, float]:
     """Of the bias of a radio that is like all others of its technology, and of one that is off."""
     usual = bias_sigma_m(radio[0]) ** 2
     return usual, usual + physics.DELAY_SIGMA_M**2
+
+
+def _own_m2(technology: str) -> float:
+    """Variance of what a radio that is like all others of a technology is off by, by itself (m²)."""
+    return (physics.RADIO_BIAS * bias_sigma_m(technology)) ** 2
 
 
 def _rarer(information: float, usual: float, wide: float) -> float:
