@@ -1,12 +1,9 @@
 """Group commit, seen from the web process: batches go to the writer process, receipts come back."""
 
 import asyncio
-import socket
-import subprocess
-import sys
 from collections import deque
+from collections.abc import Callable
 from contextlib import suppress
-from typing import cast
 
 import structlog
 from prometheus_client import Counter, Gauge, Histogram
@@ -14,7 +11,8 @@ from prometheus_client import Counter, Gauge, Histogram
 from backend.errors import TooBusy
 from backend.log.base import Appended, LogUnwritable, NewBatch
 from backend.log.engine import RETRY_UNWRITABLE_S
-from backend.log.writer_wire import LENGTHS, Frames, Written, batch_frame, parse_written, problem_of
+from backend.log.writer_link import WriterLink, connect_writer
+from backend.log.writer_wire import Written, batch_frame, problem_of
 
 BATCH_OVERHEAD_BYTES = 1024
 """What a waiting batch holds beside its body."""
@@ -25,12 +23,17 @@ RETRY_AFTER_S = 1
 SEND_BYTES = 64 * 1024
 """Batches are sent together, once in a turn of the event loop, or as soon as they are so many bytes."""
 
-SOCKET_BYTES = 4 * 1024 * 1024
-"""Asked of the kernel, which may give less: what the writer finds when it is done with a group is its next
-one, even while the event loop is busy with decoding."""
-
 REFUSAL_TELLS_S = 30.0
 """For so long a refusal tells that the log cannot be written: whoever is told so may send nothing more."""
+
+HANGS_AFTER_S = 12.0
+"""A writer that answers nothing for so long hangs: a group takes a slow disk some seconds, and a database
+that waits for a lock gives up after 10 s and says why."""
+
+KILLED_AFTER_S = 90.0
+"""Postgres ends a statement after 60 s: whatever hangs for longer does not go on by itself."""
+
+LOOK_EVERY_S = 1.0
 
 RESTART_S = 0.2
 MAX_RESTART_S = 5.0
@@ -70,8 +73,11 @@ class GroupCommit:
         self._waiting: deque[tuple[asyncio.Future[Appended], int]] = deque()
         self._unsent: list[bytes] = []
         self._unsent_bytes = 0
-        self._link: _Link | None = None
+        self._link: WriterLink | None = None
         self._keeper: asyncio.Task[None] | None = None
+        self._watcher: asyncio.Task[None] | None = None
+        self._answers = 0
+        self._hangs = False
         self._closing = asyncio.Event()
         self._refusal: tuple[float, LogUnwritable] | None = None
         _queued.set_function(lambda: self._bytes)
@@ -81,6 +87,7 @@ class GroupCommit:
         self._loop = asyncio.get_running_loop()
         link = await self._connect()
         self._keeper = asyncio.create_task(self._keep(link))
+        self._watcher = asyncio.create_task(self._watch())
 
     async def append(self, batch: NewBatch) -> Appended:
         """Append a batch; returns when it is durable on disk.
@@ -89,10 +96,13 @@ class GroupCommit:
             NotFound: there is no such incident.
             Conflict: the incident is closed.
             TooBusy: too much is waiting already.
-            LogUnwritable: the database cannot be written; nothing is acknowledged.
+            LogUnwritable: the database cannot be written, or the writer hangs; nothing is acknowledged.
         """
         if self._link is None or self._closing.is_set():
             raise _gone()
+        if self._hangs:
+            _refused.labels("writer_hangs").inc()
+            raise _hanging()
         size = len(batch.body) + BATCH_OVERHEAD_BYTES
         # An empty queue takes any batch: a limit below one batch would refuse it for ever.
         if self._bytes and self._bytes + size > self._limit:
@@ -115,6 +125,8 @@ class GroupCommit:
     @property
     def refusal(self) -> LogUnwritable | None:
         """Why the newest batch could not be written, if that was lately; None where it was, or none came."""
+        if self._hangs:
+            return _hanging()
         if self._refusal is None:
             return None
         at, problem = self._refusal
@@ -133,6 +145,8 @@ class GroupCommit:
             except TimeoutError:
                 log.error("the log's writer process hangs and is killed", waiting=len(self._waiting))
                 link.process.kill()
+        if self._watcher is not None:
+            self._watcher.cancel()
         if self._keeper is not None:
             await self._keeper
 
@@ -144,6 +158,8 @@ class GroupCommit:
 
     def take(self, written: Written) -> None:
         """Answer the requests of a group that has been dealt with."""
+        self._answers += 1
+        self._hangs = False
         _commit_seconds.observe(written.seconds)
         _group_size.observe(len(written.outcomes))
         for appended, refused in written.outcomes:
@@ -156,7 +172,7 @@ class GroupCommit:
                     self._refusal = self._loop.time(), problem
             elif appended is not None and not appended.duplicate:
                 self._refusal = None
-            if future.done():  # its request was cancelled
+            if future.done():  # its request was cancelled, or told that the writer hung
                 continue
             if refused is not None:
                 future.set_exception(problem_of(refused))
@@ -167,31 +183,44 @@ class GroupCommit:
         """Nobody knows whether what waits was written: say that it was not, so that it is sent again."""
         self._link = None
         self._unsent, self._unsent_bytes = [], 0
-        lost, self._waiting, self._bytes = self._waiting, deque(), 0
-        for future, _ in lost:
+        self._hangs = False
+        self._refuse_waiting("writer_gone", _gone)
+        self._waiting, self._bytes = deque(), 0
+
+    def _refuse_waiting(self, why: str, problem: Callable[[], LogUnwritable]) -> None:
+        for future, _ in self._waiting:
             if not future.done():
-                _refused.labels("writer_gone").inc()
-                future.set_exception(_gone())
+                _refused.labels(why).inc()
+                future.set_exception(problem())
 
-    async def _connect(self) -> "_Link":
-        ours, theirs = socket.socketpair()
-        with theirs:
-            process = subprocess.Popen(  # noqa: S603, ASYNC220 - our own module; starting it does not wait
-                [sys.executable, "-m", "backend.log.writer_process", str(theirs.fileno())],
-                pass_fds=[theirs.fileno(), *([] if self._hold is None else [self._hold])],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-            )
-        ours.setblocking(False)
-        ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BYTES)
-        link = _Link(self, process)
-        await self._loop.create_connection(lambda: link, sock=ours)
-        url = self._url.encode()
-        link.transport.write(LENGTHS.pack(0, len(url)) + url)
-        self._link = link
-        return link
+    async def _watch(self) -> None:
+        """Refuse what waits while the writer answers nothing, and kill one that does not for long.
 
-    async def _keep(self, link: "_Link | None") -> None:
+        What was refused so keeps its place, for the answer that may come: nobody is told of it, and whoever
+        sends it again is told the same.
+        """
+        silent_s = 0.0
+        while True:
+            answers = self._answers
+            await asyncio.sleep(LOOK_EVERY_S)
+            # Counted by looks and not by the clock: this process may have been stopped itself.
+            silent_s = silent_s + LOOK_EVERY_S if self._waiting and self._answers == answers else 0.0
+            if silent_s < HANGS_AFTER_S:
+                continue
+            if not self._hangs:
+                log.error("the log's writer process hangs", waiting=len(self._waiting), silent_s=silent_s)
+            self._hangs = True
+            self._refuse_waiting("writer_hangs", _hanging)
+            if silent_s >= KILLED_AFTER_S and self._link is not None:
+                log.error("the log's writer process hangs and is killed", waiting=len(self._waiting))
+                self._link.process.kill()
+                silent_s = 0.0
+
+    async def _connect(self) -> WriterLink:
+        self._link = await connect_writer(self._url, self._hold, self.take)
+        return self._link
+
+    async def _keep(self, link: WriterLink | None) -> None:
         """Start the writer again whenever it ends without having been told to."""
         pause = RESTART_S
         while True:
@@ -218,34 +247,16 @@ class GroupCommit:
                 log.error("the log's writer process cannot be started", error=str(error))
 
 
-class _Link(asyncio.Protocol):
-    """The socket to one writer process."""
-
-    transport: asyncio.Transport
-
-    def __init__(self, owner: GroupCommit, process: "subprocess.Popen[bytes]") -> None:
-        self._owner = owner
-        self._frames = Frames()
-        self.process = process
-        self.ended = asyncio.Event()
-
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        self.transport = cast("asyncio.Transport", transport)
-
-    def data_received(self, data: bytes) -> None:
-        for payload, _ in self._frames.feed(data):
-            self._owner.take(parse_written(payload))
-
-    def eof_received(self) -> None:
-        """The writer is done, or gone: close this side too."""
-
-    def connection_lost(self, error: Exception | None) -> None:
-        del error
-        self.ended.set()
-
-
 def _gone() -> LogUnwritable:
     return LogUnwritable(
         "The log's writer is not there now; it starts again by itself. Send the batch again.",
+        retry_after_s=RETRY_UNWRITABLE_S,
+    )
+
+
+def _hanging() -> LogUnwritable:
+    return LogUnwritable(
+        "The log's writer does not answer: the disk or the database hangs. Nothing is acknowledged; the "
+        "batch may be written yet. Send it again under the same name: it is taken once.",
         retry_after_s=RETRY_UNWRITABLE_S,
     )

@@ -191,6 +191,60 @@ def test_a_writer_that_hangs_does_not_keep_the_server_from_stopping(
     assert writer_pids() == []
 
 
+def test_what_a_hanging_writer_holds_is_refused_in_time_and_sent_again_it_gets_its_first_answer(
+    url: str, engine: sa.Engine, batch: MakeBatch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("backend.log.group_commit.LOOK_EVERY_S", 0.05)
+
+    async def post() -> list[Appended]:
+        async with writing(url) as writer:
+            await writer.append(batch("before"))
+            monkeypatch.setattr("backend.log.group_commit.HANGS_AFTER_S", 0.2)
+            (pid,) = writer_pids()
+            os.kill(pid, signal.SIGSTOP)
+            async with asyncio.timeout(5):
+                waited = [writer.append(batch(name)) for name in "ab"]
+                refused = await asyncio.gather(*waited, return_exceptions=True)
+            told = writer.refusal
+            assert told is not None
+            for problem in (*refused, told):
+                assert isinstance(problem, LogUnwritable)
+                assert problem.retry_after_s
+                assert "under the same name" in problem.detail
+            with pytest.raises(LogUnwritable):  # at once: nothing more is piled up
+                await asyncio.wait_for(writer.append(batch("c")), 0.04)
+            os.kill(pid, signal.SIGCONT)
+            again = [await until_taken(lambda name=name: writer.append(batch(name))) for name in "abc"]  # type: ignore[misc]
+            assert writer.refusal is None
+            assert writer_pids() == [pid]
+            return again
+
+    again = asyncio.run(post())
+    assert [(one.seq, one.duplicate) for one in again] == [(2, True), (3, True), (4, False)]
+    assert [one.batch for one in SqlLogReader(engine).batches(batch.incident)] == ["before", "a", "b", "c"]
+
+
+def test_a_writer_that_hangs_for_long_is_killed_and_replaced(
+    url: str, engine: sa.Engine, batch: MakeBatch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("backend.log.group_commit.LOOK_EVERY_S", 0.05)
+    monkeypatch.setattr("backend.log.group_commit.HANGS_AFTER_S", 0.1)
+    # The one that takes its place needs a second to begin.
+    monkeypatch.setattr("backend.log.group_commit.KILLED_AFTER_S", 5.0)
+
+    async def post() -> list[int]:
+        async with writing(url) as writer:
+            await until_taken(lambda: writer.append(batch("before")))
+            (hangs,) = writer_pids()
+            os.kill(hangs, signal.SIGSTOP)
+            seqs = [(await until_taken(lambda name=name: writer.append(batch(name)))).seq for name in "ab"]  # type: ignore[misc]
+            assert writer_pids() != [hangs]
+            return seqs
+
+    assert asyncio.run(post()) == [2, 3]
+    assert [one.batch for one in SqlLogReader(engine).batches(batch.incident)] == ["before", "a", "b"]
+
+
 def test_a_database_that_went_away_and_came_back_needs_no_restart(postgres_url: str) -> None:
     prepare(postgres_url)
     engine = make_engine(postgres_url)

@@ -1,0 +1,67 @@
+"""Processes hang without ending: they are found out by their silence, and nothing acknowledged is lost."""
+
+import contextlib
+import os
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx2
+import pytest
+
+from tests.running import Post, Server, eventually, running
+
+
+@contextlib.contextmanager
+def stopped(pid: int) -> Iterator[None]:
+    """A process that hangs for the length of a block."""
+    os.kill(pid, signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGCONT)
+
+
+@pytest.fixture
+def at_work(tmp_path: Path) -> Iterator[Server]:
+    """A server of its own with a worker that computes."""
+    with running(tmp_path / "data") as server:
+        yield server.until_it_computes()
+
+
+def step(second: int) -> dict[str, object]:
+    """A batch in which a responder makes a step."""
+    reading = {"kind": "displacement", "t": 1000.0 + second, "node": "ff1", "delta_m": [1.0, 0.0, 0.0]}
+    return {"gateway": "engine-7", "batch": f"step-{second}", "readings": [reading]}
+
+
+def test_while_the_logs_writer_hangs_gateways_are_refused_and_the_server_says_that_it_is_not_ready(
+    at_work: Server,
+) -> None:
+    post = Post(at_work.url)
+    incident = post.open_incident()
+
+    def telemetry(second: int) -> httpx2.Response:
+        return post.http.post(f"/incidents/{incident}/telemetry", json=step(second))
+
+    assert telemetry(0).status_code == 202
+    (writer,) = at_work.writer_pids()
+    with stopped(writer):
+        began = time.monotonic()
+        held = telemetry(1)
+        took_s = time.monotonic() - began
+        ready = post.http.get(at_work.url + "/readyz")
+        at_once = telemetry(2)
+    assert 8.0 < took_s < 20.0
+    for answer in (held, ready, at_once):
+        assert answer.status_code == 503
+        assert "does not answer" in answer.json()["detail"]
+        assert "retry-after" in answer.headers
+
+    eventually(lambda: telemetry(1).status_code == 202)
+    assert [telemetry(second).json()["seq"] for second in (0, 1, 2)] == [1, 2, 3]
+    assert post.http.get(at_work.url + "/readyz").status_code == 200
+    assert len(post.log(incident)) == 3
+    assert post.frame(incident, min_seq=3)["seq"] == 3
