@@ -82,6 +82,7 @@ def build_app(
         redoc_url=None,
     )
     problems.install(app)
+    app.state.workers = workers
     app.state.telemetry = TelemetryRoute(
         writer,
         incidents,

@@ -7,7 +7,7 @@ import os
 import secrets
 import socket
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 
@@ -148,8 +148,8 @@ def _serve(settings: Settings, hold: int | None) -> None:
     url = url_of(listener)
     link_token = os.environ.get(LINK_TOKEN_VARIABLE) or secrets.token_urlsafe(24)
     token = None if settings.open_access else access_token(settings.data)
-    children = _children(settings, url, link, link_token)
     app = build_app(settings, token=token, link=link, link_token=link_token, hold=hold)
+    children = _children(settings, url, link, link_token, app.state.workers.words)
     telemetry = app.state.telemetry
     config = uvicorn.Config(
         TelemetryFirst(app, telemetry, Authentication(telemetry.handle, token)),
@@ -194,7 +194,9 @@ class _Announcing(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-def _children(settings: Settings, url: str, link: socket.socket, link_token: str) -> list[Child]:
+def _children(
+    settings: Settings, url: str, link: socket.socket, link_token: str, words: Callable[[int], int]
+) -> list[Child]:
     """The processes that run beside the web process."""
     children = []
     if settings.worker:
@@ -208,7 +210,7 @@ def _children(settings: Settings, url: str, link: socket.socket, link_token: str
             f"{host}:{port}",
         ]
         environment = {LINK_TOKEN_VARIABLE: link_token, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-        children.append(Child(arguments, environment))
+        children.append(Child(arguments, environment, words))
     if settings.demo:
         arguments = ["demo", "--supervised", "--url", url]
         if not settings.open_access:

@@ -1,4 +1,4 @@
-"""Child processes that are started again when they end, and that never outlive their parent."""
+"""Child processes that are started again when they end or hang, and that never outlive their parent."""
 
 import asyncio
 import contextlib
@@ -7,7 +7,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import structlog
 
@@ -19,6 +19,15 @@ SETTLED_S = 10.0
 """A child that lived this long counts as healthy: the next start comes at once."""
 GRACE_S = 5.0
 
+SILENT_S = 20.0
+"""A child that has spoken and says nothing for so long hangs, perhaps with the database's lock in hand."""
+
+LONGEST_SILENT_S = 160.0
+"""Compiled loops may hold the interpreter: after each child that was killed for its silence the next one is
+given twice the time, so that one that only computes is not killed for ever."""
+
+LOOK_EVERY_S = 1.0
+
 
 class Child:
     """One supervised child: a `firethread` subcommand of this same installation.
@@ -26,12 +35,20 @@ class Child:
     Args:
         arguments: the subcommand and its options.
         environment: variables set for it beside ours.
+        words: how much a process has said so far, by its pid; None: nothing is expected to be said.
     """
 
-    def __init__(self, arguments: Sequence[str], environment: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        arguments: Sequence[str],
+        environment: Mapping[str, str],
+        words: Callable[[int], int] | None = None,
+    ) -> None:
         self.name = arguments[0]
         self._command = [sys.executable, "-m", "backend.cli", *arguments]
         self._environment = {**os.environ, **environment}
+        self._words = words
+        self._silent_s = SILENT_S
         self._task: asyncio.Task[None] | None = None
 
     def start(self) -> None:
@@ -55,13 +72,36 @@ class Child:
             )
             began = loop.time()
             try:
-                code = await process.wait()
+                code = await self._end_of(process)
             except asyncio.CancelledError:
                 await _end(process)
                 raise
             pause_s = FIRST_PAUSE_S if loop.time() - began > SETTLED_S else min(2 * pause_s, LONGEST_PAUSE_S)
             log.warning("child ended, it is started again", child=self.name, code=code, pause_s=pause_s)
             await asyncio.sleep(pause_s)
+
+    async def _end_of(self, process: asyncio.subprocess.Process) -> int:
+        """Wait until a child has ended, and kill it if it hangs; its exit code.
+
+        Only once it has ended is there another: what it holds is then given up, and it writes no more.
+        """
+        if self._words is None:
+            return await process.wait()
+        others = before = self._words(process.pid)  # said by whoever had its number earlier
+        silent_s = 0.0
+        while True:
+            with contextlib.suppress(TimeoutError):
+                return await asyncio.wait_for(process.wait(), LOOK_EVERY_S)
+            # Counted by looks and not by the clock: this process may have been stopped itself.
+            words = self._words(process.pid)
+            silent_s = silent_s + LOOK_EVERY_S if others < words == before else 0.0
+            before = words
+            if silent_s >= self._silent_s:
+                log.error("child hangs and is killed", child=self.name, silent_s=silent_s)
+                self._silent_s = min(2 * self._silent_s, LONGEST_SILENT_S)
+                with contextlib.suppress(ProcessLookupError):
+                    process.kill()
+                return await process.wait()
 
 
 async def _end(process: asyncio.subprocess.Process) -> None:

@@ -6,6 +6,7 @@ import struct
 import msgspec
 
 from backend.coordination.base import ToWeb, ToWorker
+from backend.coordination.instance import Instance
 
 MAX_MESSAGE_BYTES = 64 * 1024 * 1024
 MAX_HELLO_BYTES = 4096
@@ -19,10 +20,12 @@ class Hello(msgspec.Struct, frozen=True, tag="hello"):
     Attributes:
         token: the deployment's link token.
         holder: the worker's name.
+        instance: its process; None: an older version does not say.
     """
 
     token: str
     holder: str
+    instance: Instance | None = None
 
 
 class Malformed(Exception):  # noqa: N818 - names the condition

@@ -5,11 +5,12 @@ import contextlib
 import hmac
 import itertools
 import socket
+from collections import Counter
 from collections.abc import Awaitable, Callable
 
 import msgspec
+import prometheus_client
 import structlog
-from prometheus_client import Counter, Gauge
 
 from backend.coordination.base import Alive, Answer, Picture, Query, Wake
 from backend.coordination.framing import (
@@ -20,6 +21,7 @@ from backend.coordination.framing import (
     framed,
     read_frame,
 )
+from backend.coordination.instance import Instance
 from backend.coordination.outbox import Outbox
 from backend.errors import TooSlow, Unavailable
 
@@ -31,15 +33,16 @@ has vanished without a word. One whose compiled loops hold its interpreter is si
 
 log = structlog.get_logger(__name__)
 
-_connected = Gauge("firethread_link_workers", "Workers connected")
-_pictures = Counter("firethread_link_pictures", "Pictures that workers have sent")
+_connected = prometheus_client.Gauge("firethread_link_workers", "Workers connected")
+_pictures = prometheus_client.Counter("firethread_link_pictures", "Pictures that workers have sent")
 
 
 class _Worker:
     """A connected worker."""
 
-    def __init__(self, holder: str) -> None:
+    def __init__(self, holder: str, instance: Instance | None) -> None:
         self.holder = holder
+        self.instance = instance
         self.outbox = Outbox()
 
 
@@ -59,6 +62,7 @@ class WebLink:
         self._answers: dict[int, tuple[_Worker, asyncio.Future[Answer]]] = {}
         self._numbers = itertools.count(1)
         self._picture_listeners: list[Callable[[Picture], Awaitable[None] | None]] = []
+        self._words: Counter[tuple[str, int]] = Counter()
         self._server: asyncio.Server | None = None
         self._connections: set[asyncio.Task[None]] = set()
 
@@ -66,6 +70,10 @@ class WebLink:
     def connected(self) -> bool:
         """Whether a worker is connected."""
         return bool(self._workers)
+
+    def words(self, pid: int) -> int:
+        """How many messages have come from a process of this machine: a worker sends one each second."""
+        return self._words[socket.gethostname(), pid]
 
     async def start(self) -> None:
         """Begin to listen."""
@@ -140,7 +148,7 @@ class WebLink:
             log.error("a worker with a wrong link token was turned away", holder=hello.holder)
             return None
         log.info("worker connected", holder=hello.holder)
-        return _Worker(hello.holder)
+        return _Worker(hello.holder, hello.instance)
 
     async def _talk(
         self, worker: _Worker, reader: asyncio.StreamReader, writer: asyncio.StreamWriter
@@ -152,6 +160,8 @@ class WebLink:
             while True:
                 async with asyncio.timeout(SILENT_AFTER_S):
                     message = decode_to_web(await read_frame(reader))
+                if worker.instance is not None:
+                    self._words[worker.instance.host, worker.instance.pid] += 1
                 if isinstance(message, Answer):
                     self._resolve(message)
                 elif not isinstance(message, Alive):

@@ -11,6 +11,7 @@ import structlog
 
 from backend.coordination.base import Alive, Answer, Picture, Query, ToWorker
 from backend.coordination.framing import Hello, Malformed, decode_to_worker, framed, read_frame
+from backend.coordination.instance import Instance
 from backend.coordination.outbox import Outbox
 
 FIRST_PAUSE_S = 0.05
@@ -37,7 +38,7 @@ class WorkerLink:
         self, address: tuple[str, int] | None, token: str, holder: str, on_connect: Callable[[], None]
     ) -> None:
         self._address = address
-        self._hello = Hello(token, holder)
+        self._hello = Hello(token, holder, Instance.this())
         self._on_connect = on_connect
         self._outbox = Outbox()
         self._received: dict[int | str, ToWorker] = {}

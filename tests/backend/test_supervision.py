@@ -1,11 +1,19 @@
-"""A child ends when its parent is gone, kindly where it listens."""
+"""A child ends when its parent is gone, kindly where it listens; one that hangs is replaced."""
 
+import asyncio
+import itertools
 import signal
 import subprocess
 import sys
 import textwrap
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
+
+from backend import supervision
+from backend.supervision import Child
 
 CHILD = textwrap.dedent(
     """
@@ -38,3 +46,55 @@ def test_a_child_whose_parent_is_gone_ends(handler: str, code: int) -> None:
             assert child.wait(20.0) == code
         finally:
             child.kill()
+
+
+async def pids_of(words: Callable[[int], int], so_many: int, tmp_path: Path) -> list[int]:
+    """The first children that are seen under one supervisor."""
+    seen: list[int] = []
+    enough = asyncio.Event()
+
+    def noted(pid: int) -> int:
+        if pid not in seen:
+            seen.append(pid)
+        if len(seen) == so_many:
+            enough.set()
+        return words(pid)
+
+    child = Child(["worker", "--supervised", "--data", str(tmp_path)], {}, noted)
+    child.start()
+    try:
+        async with asyncio.timeout(30.0):
+            await enough.wait()
+            await asyncio.sleep(10 * supervision.SILENT_S)
+    finally:
+        await child.stop()
+    return seen
+
+
+@pytest.fixture
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(supervision, "LOOK_EVERY_S", 0.02)
+    monkeypatch.setattr(supervision, "SILENT_S", 0.1)
+    monkeypatch.setattr(supervision, "FIRST_PAUSE_S", 0.01)
+
+
+@pytest.mark.usefixtures("impatient")
+def test_a_child_that_falls_silent_is_replaced_and_the_next_is_given_more_time(tmp_path: Path) -> None:
+    said: dict[int, int] = {}
+    began: dict[int, float] = {}
+    last: dict[int, float] = {}
+
+    def spoke_once(pid: int) -> int:
+        last[pid] = time.monotonic()
+        began.setdefault(pid, last[pid])
+        said[pid] = min(said.get(pid, -1) + 1, 1)
+        return said[pid]
+
+    first, second, *_ = asyncio.run(pids_of(spoke_once, 3, tmp_path))
+    assert last[second] - began[second] > 1.5 * (last[first] - began[first]) > 0.1
+
+
+@pytest.mark.usefixtures("impatient")
+@pytest.mark.parametrize("said", [itertools.count(), itertools.repeat(0), itertools.repeat(7)])
+def test_a_child_that_speaks_or_has_not_begun_to_is_left_alone(said: Iterator[int], tmp_path: Path) -> None:
+    assert len(asyncio.run(pids_of(lambda _: next(said), 1, tmp_path))) == 1

@@ -10,7 +10,7 @@ from pathlib import Path
 import httpx2
 import pytest
 
-from tests.running import Post, Server, eventually, running
+from tests.running import READY_WITHIN_S, Post, Server, eventually, running
 
 
 @contextlib.contextmanager
@@ -65,3 +65,17 @@ def test_while_the_logs_writer_hangs_gateways_are_refused_and_the_server_says_th
     assert post.http.get(at_work.url + "/readyz").status_code == 200
     assert len(post.log(incident)) == 3
     assert post.frame(incident, min_seq=3)["seq"] == 3
+
+
+def test_a_worker_that_hangs_is_replaced_and_what_came_meanwhile_is_shown(at_work: Server) -> None:
+    post = Post(at_work.url)
+    incident = post.open_incident()
+    assert post.http.post(f"/incidents/{incident}/telemetry", json=step(0)).status_code == 202
+    post.frame(incident, min_seq=1)
+    (hangs,) = at_work.worker_pids()
+    with stopped(hangs):
+        assert post.http.post(f"/incidents/{incident}/telemetry", json=step(1)).status_code == 202
+        eventually(lambda: at_work.worker_pids() not in ([hangs], []), within_s=40.0)
+        assert not Path(f"/proc/{hangs}").exists()
+        eventually(at_work.until_it_computes, within_s=READY_WITHIN_S)
+        assert post.frame(incident, min_seq=2)["seq"] == 2
