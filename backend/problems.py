@@ -27,6 +27,7 @@ from backend.errors import (
     WrongMediaType,
 )
 
+API = "/api/"
 NO_JSON = "the body is no JSON; send one JSON object in UTF-8"
 
 log = structlog.get_logger()
@@ -69,12 +70,18 @@ def install(app: FastAPI) -> None:
     async def by_status(request: Request, error: HTTPException) -> Response:
         kind = BY_STATUS.get(error.status_code, Problem)
         methods = methods_of(request)
-        # The screen's files lie under every path: what no route of the API takes ends there, as not found.
+        # The screen's files lie under every path: what no route of the API takes ends there, as not found, or
+        # by another method as not allowed.
         if kind is NotFound and methods and request.method not in methods:
             kind = NotAllowed
+        if kind is NotAllowed and not methods:
+            if request.url.path.startswith(API):
+                kind = NotFound
+            methods = {"GET", "HEAD"}
         detail = f"{request.method} {request.url.path}: {kind.title.lower()}"
         response = answer(kind(NO_JSON if kind is NotUnderstood else detail))
-        response.headers.update(error.headers or {})
+        if kind.status == error.status_code:
+            response.headers.update(error.headers or {})
         if kind is NotAllowed:
             response.headers["allow"] = ", ".join(sorted(methods))
         return response

@@ -27,3 +27,21 @@ def test_a_body_is_refused_for_what_is_wrong_with_it(
     answer = httpx2.post(f"{server.url}/api/v1/incidents", content=body, headers=headers)
     assert (answer.status_code, answer.headers["content-type"]) == (status, "application/problem+json")
     assert said in answer.json()["detail"]
+
+
+@pytest.mark.parametrize("method", ["GET", "POST", "PATCH", "DELETE"])
+@pytest.mark.parametrize("path", ["incidents/", "incidents/x/telemetry/", "nowhere"])
+def test_where_the_api_has_no_page_none_is_found_by_any_method(
+    server: Server, method: str, path: str
+) -> None:
+    answer = httpx2.request(method, f"{server.url}/api/v1/{path}")
+    assert (answer.status_code, answer.json()["title"]) == (404, "There is nothing under that name")
+    assert "allow" not in answer.headers
+
+
+@pytest.mark.parametrize(
+    ("path", "allowed"), [("api/v1/incidents", "GET, POST"), ("assets/screen.js", "GET, HEAD")]
+)
+def test_a_page_says_which_methods_it_takes(server: Server, path: str, allowed: str) -> None:
+    answer = httpx2.delete(f"{server.url}/{path}")
+    assert (answer.status_code, answer.headers["allow"]) == (405, allowed)
