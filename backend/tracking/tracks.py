@@ -19,6 +19,9 @@ FILL_S = 300
 Standing = tuple[int, PictureRecord]
 """A second, and the record that stands from it on."""
 
+Stored = tuple[int, PictureRecord | bytes]
+"""The same, where the record may be encoded still: what falls between two points is never decoded."""
+
 Point = tuple[float, float, float, float, float, float, float, float, float, float]
 
 
@@ -48,9 +51,7 @@ def live_tracks(
     """
     tracks: dict[str, list[Point]] = {}
     points = 0
-    for second, record in _seconds(reader, incident, start, end, newest):
-        if second % step_s:
-            continue
+    for second, record in _seconds(reader, incident, start, end, step_s, newest):
         for known in record.nodes:
             if node is not None and known.node != node:
                 continue
@@ -83,35 +84,44 @@ def _rounded(points: list[Point], decimals: int) -> list[Point]:
 
 
 def _seconds(
-    reader: LogReader, incident: str, start: float | None, end: float | None, newest: Standing | None
+    reader: LogReader,
+    incident: str,
+    start: float | None,
+    end: float | None,
+    step_s: int,
+    newest: Standing | None,
 ) -> Iterator[Standing]:
-    """Each whole second with the record that stood then."""
-    before: Standing | None = None
+    """Each multiple of the step with the record that stood then."""
+    before: Stored | None = None
     if start is not None:
         row = reader.frame_at(incident, start)
         if row is not None and row.second < start:
-            before = row.second, decode(row.record)
+            before = row.second, row.record
     for (since, record), until in _periods(_standing(reader, incident, start, newest), before):
-        for second in range(since, min(until, since + 1 + FILL_S)):
+        if end is not None and since > end:
+            return
+        for second in range(since + -since % step_s, min(until, since + 1 + FILL_S), step_s):
             if end is not None and second > end:
                 return
             if start is None or second >= start:
+                if isinstance(record, bytes):
+                    record = decode(record)  # noqa: PLW2901 - the same record
                 yield second, record
 
 
 def _standing(
     reader: LogReader, incident: str, start: float | None, newest: Standing | None
-) -> Iterator[Standing]:
+) -> Iterator[Stored]:
     """Records and the seconds from which they stand."""
     last: int | None = None
     for row in reader.frames(incident, start):
         last = row.second
-        yield row.second, decode(row.record)
+        yield row.second, row.record
     if newest is not None and (last is None or newest[0] > last):
         yield newest
 
 
-def _periods(records: Iterator[Standing], before: Standing | None) -> Iterator[tuple[Standing, int]]:
+def _periods(records: Iterator[Stored], before: Stored | None) -> Iterator[tuple[Stored, int]]:
     """Each record with the second from which another stands."""
     for record in records:
         if before is not None:
