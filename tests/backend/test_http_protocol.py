@@ -202,3 +202,54 @@ def test_a_socket_may_be_silent(monkeypatch: pytest.MonkeyPatch) -> None:
             assert await screen.recv() == "still here"
 
     asyncio.run(go())
+
+
+async def refusing(scope: Scope, receive: Receive, send: Send) -> None:
+    """An application that refuses what is announced to be too large, unread."""
+    del scope, receive
+    await send({"type": "http.response.start", "status": 413, "headers": [(b"content-length", b"3")]})
+    await send({"type": "http.response.body", "body": b"no!"})
+
+
+BODY_BYTES = 16 * 1024 * 1024
+POSTED = b"POST / HTTP/1.1\r\nhost: x\r\nconnection: close\r\ncontent-length: %d\r\n\r\n" % BODY_BYTES
+
+
+def test_who_sends_all_before_it_reads_is_told_why_it_was_refused() -> None:
+    async def go() -> None:
+        async with asyncio.timeout(PATIENCE_S), served(refusing) as port:
+            reader, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(POSTED + bytes(BODY_BYTES))
+            await writer.drain()
+            answer = await reader.read()
+            assert answer.startswith(b"HTTP/1.1 413 ")
+            assert b"connection: close\r\n" in answer
+            assert answer.endswith(b"no!")
+            writer.close()
+
+    asyncio.run(go())
+
+
+async def without_end(writer: asyncio.StreamWriter) -> None:
+    """Send on for ever."""
+    while True:
+        writer.write(bytes(100))
+        await writer.drain()
+        await asyncio.sleep(0.01)
+
+
+@pytest.mark.parametrize(("bound", "least"), [("LINGER_S", 0.1), ("LINGER_BYTES", 1000)])
+def test_what_a_refused_client_still_sends_is_taken_in_within_bounds(
+    monkeypatch: pytest.MonkeyPatch, bound: str, least: float
+) -> None:
+    monkeypatch.setattr(http_protocol, bound, least)
+
+    async def go() -> None:
+        async with asyncio.timeout(PATIENCE_S), served(refusing) as port:
+            _, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(POSTED)
+            with pytest.raises(ConnectionError):
+                await without_end(writer)
+            writer.close()
+
+    asyncio.run(go())
