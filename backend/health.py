@@ -14,7 +14,7 @@ from starlette.responses import Response
 from backend.coordination.web_link import WebLink
 from backend.errors import Unavailable
 from backend.log.base import LogUnwritable
-from backend.log.engine import RETRY_UNWRITABLE_S, reading
+from backend.log.engine import RETRY_UNWRITABLE_S, reading, refuse_if_gone
 from backend.problems import openapi_responses
 
 ANSWER_WITHIN_S = 3.0
@@ -87,10 +87,11 @@ def _ask(engine: sa.Engine) -> None:
 
     Raises:
         LogUnreadable: it failed.
-        LogUnwritable: there is no room for more telemetry.
+        LogUnwritable: there is no room for more telemetry, or the database's file is gone.
     """
     with reading(engine) as connection:
         connection.execute(sa.text("SELECT 1"))
+        refuse_if_gone(connection)
     if engine.dialect.name != "sqlite" or not engine.url.database:
         return
     free = shutil.disk_usage(Path(engine.url.database).parent).free

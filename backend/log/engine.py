@@ -3,6 +3,7 @@
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 from sqlite3 import SQLITE_BUSY
 from sqlite3 import Connection as SqliteConnection
 from sqlite3 import OperationalError as SqliteError
@@ -74,7 +75,7 @@ def make_engine(url: str, *, checkpoints: bool = False) -> sa.Engine:
     )
 
     @sa.event.listens_for(engine, "connect")
-    def on_connect(connection: SqliteConnection, _record: object) -> None:
+    def on_connect(connection: SqliteConnection, record: sa.pool.ConnectionPoolEntry) -> None:
         connection.isolation_level = None  # transactions are begun by us, not by the driver
         # Takes effect where the database is still empty, and not once it has a WAL.
         connection.execute(f"PRAGMA page_size={PAGE_BYTES}")
@@ -86,11 +87,14 @@ def make_engine(url: str, *, checkpoints: bool = False) -> sa.Engine:
             f"wal_autocheckpoint={CHECKPOINT_PAGES if checkpoints else 0}",
         ):
             connection.execute(f"PRAGMA {pragma}")
+        record.info[_FILE] = _file(parts.database)
 
     @sa.event.listens_for(engine, "begin")
     def on_begin(connection: sa.Connection) -> None:
         # A deferred transaction that turns into a writing one is refused where another wrote meanwhile.
         writes = connection.get_execution_options().get("writes", False)
+        if writes:
+            refuse_if_gone(connection)
         connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
 
     return engine
@@ -114,12 +118,44 @@ def _write_ahead(connection: SqliteConnection) -> None:
             return
 
 
+_FILE = "file"
+"""Where a connection's pool keeps which file it has open."""
+
+
+def _file(path: str | None) -> int | None:
+    """The number by which the file system knows what lies at a path; None: nothing does."""
+    try:
+        return Path(path or "").stat().st_ino
+    except OSError:
+        return None
+
+
+def refuse_if_gone(connection: sa.Connection) -> None:
+    """Refuse where SQLite's file is not at its path any more: what is written to it is in no folder.
+
+    SQLite itself does not look, and would write on to what was deleted, until its last connection closes.
+
+    Raises:
+        LogUnwritable: it has been deleted, moved or replaced.
+    """
+    if connection.dialect.name != "sqlite":
+        return
+    opened = connection.connection.info.get(_FILE)
+    if opened is not None and opened != _file(connection.engine.url.database):
+        raise LogUnwritable(
+            "The database's file has been deleted, moved or replaced while the server ran: nothing is "
+            "acknowledged. What it held can be read until the server stops: save each incident's `log` "
+            "first. Then put the file back, or restart the server.",
+            retry_after_s=RETRY_UNWRITABLE_S,
+        )
+
+
 @contextmanager
 def writing(engine: sa.Engine) -> Iterator[sa.Connection]:
     """A transaction that writes: SQLite's write lock is taken at its start.
 
     Raises:
-        LogUnwritable: the database failed; the transaction is rolled back.
+        LogUnwritable: the database failed, or its file is gone; the transaction is rolled back.
     """
     try:
         with engine.execution_options(writes=True).begin() as connection:

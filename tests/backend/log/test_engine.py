@@ -65,6 +65,33 @@ def test_a_damaged_file_is_said_to_be_away(tmp_path: Path) -> None:
         connection.exec_driver_sql("SELECT count(body) FROM batches").scalar()
 
 
+def test_nothing_is_written_to_a_file_that_is_not_in_its_place_and_what_it_holds_is_read(
+    tmp_path: Path,
+) -> None:
+    path, elsewhere = tmp_path / "x.db", tmp_path / "y.db"
+    engine = make_engine(f"sqlite:///{path}")
+
+    def write() -> None:
+        with writing(engine) as connection:
+            connection.exec_driver_sql("INSERT INTO batches VALUES (NULL)")
+
+    with writing(engine) as connection:
+        connection.exec_driver_sql("CREATE TABLE batches (seq INTEGER PRIMARY KEY)")
+    write()
+    path.rename(elsewhere)
+    with pytest.raises(LogUnwritable, match="deleted, moved or replaced"):
+        write()
+    path.touch()
+    with pytest.raises(LogUnwritable, match="deleted, moved or replaced"):
+        write()
+    with reading(engine) as connection:
+        assert connection.exec_driver_sql("SELECT count(*) FROM batches").scalar() == 1
+    elsewhere.rename(path)
+    write()
+    with reading(engine) as connection:
+        assert connection.exec_driver_sql("SELECT count(*) FROM batches").scalar() == 2
+
+
 def test_what_is_asked_wrongly_is_a_defect_and_no_failure_of_the_database(tmp_path: Path) -> None:
     engine = make_engine(f"sqlite:///{tmp_path / 'x.db'}")
     with writing(engine) as connection:
