@@ -5,12 +5,13 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 import sqlalchemy as sa
 
-from tests.running import Post, Server, eventually, free_port
+from tests.running import Post, Server, eventually, free_port, running
 
 SHARED_WORD = "a-word-that-both-share"
 FULL = [
@@ -113,6 +114,26 @@ def test_a_postgres_whose_disk_is_full_is_told_until_there_is_room_again(
     admin.dispose()
     assert post.http.post(f"/incidents/{incident}/telemetry", json=step).status_code == 202
     assert post.http.get(server.url + "/readyz").status_code == 200
+
+
+def test_one_batch_that_several_web_processes_take_at_once_is_in_the_log_once(
+    apart: tuple[Server, str, str], tmp_path: Path
+) -> None:
+    first, _, database = apart
+    incident = Post(first.url).open_incident()
+    with running(tmp_path / "second", "--no-worker", "--database", database) as second:
+
+        def post_all(server: Server) -> list[dict[str, object]]:
+            with contextlib.closing(Post(server.url).http) as http:
+                sent = [{"gateway": "g", "batch": f"b{number}", "readings": []} for number in range(50)]
+                return [http.post(f"/incidents/{incident}/telemetry", json=one).json() for one in sent]
+
+        with ThreadPoolExecutor(4) as gateways:
+            answers = list(gateways.map(post_all, [first, second, first, second]))
+    for same in zip(*answers, strict=True):
+        assert len({answer["seq"] for answer in same}) == 1
+        assert sorted(bool(answer["duplicate"]) for answer in same) == [False, True, True, True]
+    assert len(Post(first.url).log(incident)) == 50
 
 
 def readiness(server: Server) -> dict[str, bool]:
