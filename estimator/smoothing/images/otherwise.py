@@ -5,10 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from estimator.fusion import physics
 from estimator.fusion.images import Image, Otherwise
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.keyframes.walks import PLACES, STATES
 
 APART_M = 2.0
 """Solutions that put somebody nearer to each other than this are the same."""
@@ -40,10 +41,31 @@ def same_place(one_m: Array, other_m: Array) -> bool:
     return bool((np.hypot(*(one_m - other_m).T) < APART_M).all())
 
 
+def goes_on_m(layout: Layout, x: Array, index: int, keyframe: int) -> Array:
+    """Where somebody is at a keyframe, and where he comes to if he goes on as he goes there, 2 × 2 (m).
+
+    A way without a unit and its image meet where both cross their line, and part again beyond it: there a
+    velocity tells one from the other, which carries him on for as long as it lasts.
+
+    Args:
+        layout: of the window.
+        x: an estimate, flat.
+        index: of his walk.
+        keyframe: the keyframe.
+    """
+    walk, state = layout.walks[index], layout.states(x, index)[keyframe]
+    free = walk.way is None and walk.node.moving
+    lasts_s = physics.SPEED_MEMORY_S[walk.node.role] if free else 0.0
+    return np.stack([state[:2], state[:2] + lasts_s * state[PLACES : PLACES + 2]])
+
+
 def same_now(layout: Layout, one: Array, other: Array) -> bool:
-    """Whether two solutions of a window, flat, put everybody who moves at the same place now."""
-    now = slice((layout.length - 1) * layout.width, layout.length * layout.width)
-    return same_place(one[now].reshape(-1, STATES)[:, :2], other[now].reshape(-1, STATES)[:, :2])
+    """Whether two solutions of a window, flat, put all who move at the same place and on the same way."""
+    return all(_same_now(layout, one, other, i) for i in range(len(layout.walks)))
+
+
+def _same_now(layout: Layout, one: Array, other: Array, index: int) -> bool:
+    return same_place(*(goes_on_m(layout, x, index, layout.length - 1) for x in (one, other)))
 
 
 def otherwise(layout: Layout, x: Array, modes: Iterable[Mode]) -> dict[str, tuple[Otherwise, ...]]:
@@ -58,6 +80,7 @@ def otherwise(layout: Layout, x: Array, modes: Iterable[Mode]) -> dict[str, tupl
     at = {walk.number: now + STATES * i for i, walk in enumerate(layout.walks)}
     at |= {number: size + start for number, start in layout.stands.items()}
     found: dict[str, tuple[Otherwise, ...]] = {}
+    walks = {walk.number: i for i, walk in enumerate(layout.walks)}
     for number, start in at.items():
         name, own = layout.state.owners[number], slice(start, start + 2)
         told = []
@@ -65,6 +88,8 @@ def otherwise(layout: Layout, x: Array, modes: Iterable[Mode]) -> dict[str, tupl
             # Who has changed sides with others may be on the line just now, and leave it elsewhere.
             image = mode.images.get(number, Image())
             goes_on = number in mode.images and len(mode.images) > 1
+            # So may who crosses it alone.
+            goes_on = goes_on or (number in walks and not _same_now(layout, x, mode.x, walks[number]))
             # So may who faces elsewhere: he has hardly gone from where both ways begin.
             goes_on = goes_on or image.turned_rad != 0.0
             if goes_on or not same_place(mode.x[own], x[own]):

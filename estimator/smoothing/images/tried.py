@@ -9,7 +9,7 @@ from estimator.fusion.images import Image
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
 from estimator.smoothing.images.flips import Flip
-from estimator.smoothing.images.otherwise import same_place
+from estimator.smoothing.images.otherwise import goes_on_m, same_place
 from estimator.smoothing.images.parts import Part
 from estimator.smoothing.images.turns import facing, reports_from, turn
 from estimator.smoothing.keyframes.layout import Layout
@@ -142,12 +142,13 @@ class Asked(NamedTuple):
         return all(same_place(self._places(one.x, i), self._places(other.x, i)) for i in asked)
 
     def _places(self, x: Array, index: int) -> Array:
-        """Where a walk is at epochs that are asked for, k × 2 (m)."""
+        """Where a walk is at epochs that are asked for, and where it would come to then, k × 2 (m)."""
         walk = self.layout.walks[index]
         last = walk.last if self.part is None else min(walk.last, self.part.numbers.until)
         # Who is at the same place before the window ends may still have come another way.
         first = walk.first if self.whole or last < walk.last else last
-        return self.layout.states(x, index)[first : last + 1, :2]
+        way_m = self.layout.states(x, index)[first:last, :2]
+        return np.concatenate([way_m, goes_on_m(self.layout, x, index, last)])
 
 
 def heading(layout: Layout, index: int, x: Array) -> float:

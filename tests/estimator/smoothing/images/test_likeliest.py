@@ -10,10 +10,10 @@ from estimator.measurements.drop import Drop
 from estimator.measurements.range import Range
 from estimator.measurements.retire import Retire
 from estimator.smoothing.images.likeliest import likeliest
-from estimator.smoothing.images.otherwise import Mode, admit, otherwise
+from estimator.smoothing.images.otherwise import Mode, admit, otherwise, same_now
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.smoothing.images.test_flips import CORNERS, TWO, crossing, places, solved_of
+from tests.estimator.smoothing.images.test_flips import CORNERS, CROSSED_S, TWO, crossing, places, solved_of
 
 LINE = mirrored(np.zeros(2), 0.0)
 
@@ -150,3 +150,18 @@ def test_who_may_be_elsewhere_is_told_where_and_since_when() -> None:
     assert other.image.of(here) == pytest.approx(LINE.of(here), abs=1e-9)
     assert (other.share, other.since_t) == (0.4, since_t)
     assert not found["a1"]
+
+
+def test_who_crosses_the_line_just_where_his_image_does_may_go_on_to_either_side() -> None:
+    """Both are at one place for a second; what each goes on by is not the same."""
+    problem, solved = solved_of([r for r in crossing(TWO) if r.t <= CROSSED_S])
+    layout, x = problem.layout, solved.x.copy()
+    walk, states = layout.walks[0], layout.states(x, 0)
+    LINE.move(states)
+    here = states[-1, :2] = places(problem, solved)[-1]
+    assert not same_now(layout, solved.x, x)
+    found = otherwise(layout, solved.x, [Mode(walk.number, 0.5, x, 0.0, LINE, {walk.number: LINE})])
+    (other,) = found["ff1"]
+    assert other.image.of(here) == pytest.approx(here, abs=1e-9)
+    states[-1, 3:5] = layout.states(solved.x, 0)[-1, 3:5]
+    assert same_now(layout, solved.x, x)
