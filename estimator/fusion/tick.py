@@ -16,6 +16,7 @@ from estimator.fusion.motion.units import drift_units, was_silent
 from estimator.fusion.motion.way import offset_of
 from estimator.fusion.readings import boots, held
 from estimator.fusion.readings.clocks import retimed
+from estimator.fusion.readings.copies import once
 from estimator.fusion.readings.crossings import hear
 from estimator.fusion.readings.displacements import move_units, returns
 from estimator.fusion.readings.jumps import another as another_altimeter
@@ -51,8 +52,8 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     state.newest_t = max(state.newest_t, until_t)
     displacements: list[Displacement] = []
     holds: list[AnyHeld] = list(state.waiting)
-    retired: list[Retire] = []
-    returned: list[Node] = []
+    retired, returned = list[Retire](), list[Node]()
+    readings = once(state, readings)
     for reading in readings:
         if state.called and isinstance(reading, (*HELD, Displacement, Samples)):
             for name in names_of(reading):
