@@ -80,8 +80,6 @@ UNHEARD_MEMORY_S = 5.0
 # Nodes without PDR: a velocity that is forgotten with time (Singer's model, for velocity).
 SPEED_SIGMA_MPS: dict[str, tuple[float, float]] = {"responder": (1.0, 0.2), "uav": (5.0, 2.0)}
 """Usual speed of each role, along each horizontal axis and upwards."""
-LEVEL_SPEED_SIGMA_MPS = 0.02
-"""Usual speed upwards of who is on one floor: a slope of two in a hundred, walked."""
 SPEED_MEMORY_S: dict[str, float] = {"responder": 5.0, "uav": 5.0}
 
 SIGMA_FLOOR_M = 0.01

@@ -21,7 +21,6 @@ from estimator.smoothing.changes.elsewhere import GAIN, USUAL_COST
 from estimator.smoothing.changes.moved import Moved, moved_nodes
 from estimator.smoothing.extent import spacing_s as usual_s
 from estimator.smoothing.images.climbed import climbed
-from estimator.smoothing.images.offplane import keep_level, off_plane
 from estimator.smoothing.images.otherwise import Mode
 from estimator.smoothing.images.worn import worn
 from estimator.smoothing.keyframes.layout import Layout
@@ -134,9 +133,8 @@ def _solved(state: FusionState) -> tuple[Problem, Solved]:
 
 def _begun(state: FusionState) -> tuple[Problem, Solved]:
     """A solution that is at rest enough to be learned from, with all nodes that were moved where they lie."""
-    problem = keep_level(_problem(state), _problem)
+    problem = _problem(state)
     solved = problem.solve(problem.layout.start(), SLACKS_M, resting=LEARNING_RESTING)
-    problem, solved = off_plane(problem, solved, LEARNING_RESTING)
     problem, solved = climbed(problem, solved, _problem, LEARNING_RESTING)
     problem, solved, _ = worn(problem, solved, _problem, LEARNING_RESTING, -math.inf)
     return _settled(problem, solved, LEARNING_RESTING)

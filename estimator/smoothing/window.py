@@ -37,7 +37,6 @@ from estimator.smoothing.extent import (
 from estimator.smoothing.images.climbed import climbed, hinted
 from estimator.smoothing.images.flips import heard_by
 from estimator.smoothing.images.likeliest import likeliest
-from estimator.smoothing.images.offplane import keep_level, off_plane
 from estimator.smoothing.images.otherwise import otherwise
 from estimator.smoothing.images.solutions import SLACKS_M
 from estimator.smoothing.images.tried import SAME_RAD
@@ -151,13 +150,11 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         restart(state)
         return False
     try:
-        build = partial(_problem, since=since)
-        begun = keep_level(_problem(state, since), build)
+        begun = _problem(state, since)
         start = _solved(begun, begun.layout.start(), solved_t)
-        begun, start = off_plane(begun, start, RESTING)
         if hinted(begun, start):
-            begun, start = climbed(begun, start, build, RESTING)
-        begun, start, others = worn(begun, start, build, RESTING, solved_t)
+            begun, start = climbed(begun, start, partial(_problem, since=since), RESTING)
+        begun, start, others = worn(begun, start, partial(_problem, since=since), RESTING, solved_t)
         layout, judged = begun.layout, likeliest(begun, start)
         problem, solved, modes, state.exposed, asked = judged
         trimmed = trim(problem, solved)

@@ -136,7 +136,7 @@ def place(
         state.ledger.add("begins", since.t, node.index, 0.0, uav, *since.position_m, *since.sigma, 0.0, 0.0)
         across, upwards = physics.SPEED_SIGMA_MPS[node.role]
         state.graph.add_node(node.velocity, (0.0, 0.0, 0.0), (across, across, upwards))
-        state.nodes[node.node] = replace(node, mode="free", plane_m=None, pose_t=t, t=max(t, node.t))
+        state.nodes[node.node] = replace(node, mode="free", pose_t=t, t=max(t, node.t))
     else:
         state.ledger.add("stands", t, node.index, east, north, up, *floored)
         state.nodes[node.node] = replace(node, mode="static", t=max(t, node.t))
@@ -167,8 +167,6 @@ def attach_unit(
         raw: its displacements are made here, from samples.
     """
     state.graph.delete_nodes([node.velocity])
-    up_m = float(state.graph.value(node.position)[2])
-    node = replace(node, unseen_up_m2=node.unseen_up_m2 + node.mirrored_m2(up_m), plane_m=None)
     boot = state.navigations.get(node.node) if raw else None
     node = replace(node, raw=raw)
     turn = initial_turn(node.heading_rad, unit_heading_rad)
@@ -233,9 +231,7 @@ def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float)
         # What was measured to it before was measured to another place, or to a hand that carried it.
         node = replace(node, mode="undecided", index=state.number(name))
     wide = (NO_PRIOR_SIGMA_M,) * 3
-    node = replace(
-        node, otherwise=by.otherwise, unseen_up_m2=by.doubt_up_m2 + by.mirrored_m2(float(where_m[2]))
-    )
+    node = replace(node, otherwise=by.otherwise, unseen_up_m2=by.doubt_up_m2)
     place(state, node, t, where_m, wide)
     state.ledger.add("drops", t, node.index, by.index)
     start = state.graph.rows(state.nodes[name].position).start

@@ -37,7 +37,7 @@ def _marginalise(state: FusionState, node: NodeState, t: float) -> None:
         own = covariance[rows, rows] + doubt
         loose = loose_headings(state, covariance)
         own += swung_m2(covariance[None, rows, loose], covariance[loose, loose])[0]
-        own[2, 2] = max(own[2, 2], node.doubt_up_m2) + node.mirrored_m2(place_m[2])
+        own[2, 2] = max(own[2, 2], node.doubt_up_m2)
         covariance_m2 = upper_triangle(own)
         owned = [v for v in (node.position, node.velocity, node.unit) if v in state.graph]
         state.graph.delete_nodes(owned)

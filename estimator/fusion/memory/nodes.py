@@ -57,8 +57,6 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         raw: its unit reports raw samples, which are navigated here.
         level: its unit has never reported a change of height.
         unseen_up_m2: variance of its height by the stairs that such a unit does not see.
-        plane_m: height of all radios that tell of its place, where they are level and nothing else tells its
-            height: in their plane no distance tells it, and above them it fits as well as below (m).
         climbs: distances have told that its bearer has climbed unseen by it.
         turned: its unit's frame may be turned by any angle: every window is tried with several.
         bias_told: what readings say of its unit's gyro bias without its prior.
@@ -90,7 +88,6 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     raw: bool = False
     level: bool = True
     unseen_up_m2: float = 0.0
-    plane_m: float | None = None
     climbs: bool = False
     walk_factors: tuple[float, float] = (1.0, 1.0)
     turned: bool = False
@@ -128,16 +125,6 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     def doubt_up_m2(self) -> float:
         """The least that its height is unsure by, where nothing tells it: stairs unseen (m²)."""
         return 0.0 if self.heights else self.unseen_up_m2
-
-    def mirrored_m2(self, up_m: float) -> float:
-        """What is added to the variance of its height since it may as well be across the plane (m²).
-
-        Half of the squared distance of its two heights.
-
-        Args:
-            up_m: the one that it is shown at (m).
-        """
-        return 0.0 if self.plane_m is None else 2.0 * (up_m - self.plane_m) ** 2
 
     @property
     def moving(self) -> bool:

@@ -51,21 +51,3 @@ class Prior(NamedTuple):
         return self._replace(
             matrix=turn @ self.matrix @ turn.T, vector=turn @ self.vector, reference=reference
         )
-
-    def across(self, number: int, plane_m: float) -> "Prior":
-        """The same, if somebody without a unit had been as far on the other side of a level plane.
-
-        Args:
-            number: his.
-            plane_m: its height (m).
-        """
-        turn, reference, start = np.ones(len(self.vector)), self.reference.copy(), 0
-        for kind, each in self.keys:
-            if kind == "free" and each == number:
-                turn[[start + 2, start + 5]] = -1.0
-                reference[start + 2] = 2.0 * plane_m - reference[start + 2]
-                reference[start + 5] *= -1.0
-            start += SIZES[kind]
-        return self._replace(
-            matrix=turn[:, None] * self.matrix * turn, vector=turn * self.vector, reference=reference
-        )

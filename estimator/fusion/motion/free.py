@@ -51,7 +51,7 @@ def _carry(state: FusionState, stepping: Sequence[NodeState], steps_s: Sequence[
     for node, step_s in zip(stepping, steps_s, strict=True):
         start, velocity = state.graph.rows(node.position).start, state.graph.rows(node.velocity).start
         index = [start, start + 1, start + 2, velocity, velocity + 1, velocity + 2]
-        transition, noise = free_motion(node.role, step_s, node.plane_m is not None)
+        transition, noise = free_motion(node.role, step_s)
         rows.append(index)
         moved.append(transition @ state.graph.reference[index])
         transitions.append(transition)
@@ -59,17 +59,9 @@ def _carry(state: FusionState, stepping: Sequence[NodeState], steps_s: Sequence[
     state.graph.advance(np.array(rows), np.array(moved), np.array(transitions), np.array(noises))
 
 
-def free_motion(role: str, duration_s: float, level: bool = False) -> tuple[Array, Array]:
+def free_motion(role: str, duration_s: float) -> tuple[Array, Array]:
     """Transition and noise of position and velocity, 6 × 6 each, over a time (s).
 
     The velocity is an Ornstein-Uhlenbeck process: v' = v e^(−Δt/τ) + w with the role's usual speed.
-
-    Args:
-        role: the node's.
-        duration_s: how long it moves (s).
-        level: it keeps its height, as on one floor.
     """
-    across, upwards = physics.SPEED_SIGMA_MPS[role]
-    if level:
-        upwards = physics.LEVEL_SPEED_SIGMA_MPS
-    return ornstein_uhlenbeck(physics.SPEED_MEMORY_S[role], across, upwards, duration_s)
+    return ornstein_uhlenbeck(physics.SPEED_MEMORY_S[role], *physics.SPEED_SIGMA_MPS[role], duration_s)

@@ -57,7 +57,7 @@ def _zero(
     if not known.enough(t):
         return known
     row = state.graph.starts[node.position] + 2
-    unseen_m2 = node.doubt_up_m2 + node.mirrored_m2(float(state.place(node)[2]))
+    unseen_m2 = 0.0 if node.heights else node.unseen_up_m2
     off_m, doubt_m = known.judged(sigma_m, float(state.graph.covariance()[row, row]) + unseen_m2)
     if off_m:
         text = f"the altimeter of {node.node} is off by {off_m:+.1f} m: it was not zeroed"

@@ -12,7 +12,6 @@ from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.swings import unbend
 from estimator.fusion.motion.way import offset_of, turned_m
 from estimator.fusion.readings.altimeters import heard_altimeter
-from estimator.fusion.readings.jumps import doubt_height
 from estimator.fusion.rows.rows import Single
 from estimator.graph.robust import Mixture
 from estimator.graph.variable import Variable
@@ -119,14 +118,8 @@ def _told(state: FusionState, node: NodeState, known: Absolute) -> NodeState:
 
 
 def _tell_heights(state: FusionState, name: str) -> None:
-    node = state.nodes[name]
-    if node.heights:
-        return
-    if node.plane_m is not None and node.decided:
-        # He may be across the plane of his radios: the window says on which side.
-        state.due = True
-        doubt_height(state, node, node.pose_t, node.mirrored_m2(float(state.place(node)[2])))
-    state.nodes[name] = replace(node, heights=True)
+    if not state.nodes[name].heights:
+        state.nodes[name] = replace(state.nodes[name], heights=True)
 
 
 def _enter_single(

@@ -103,9 +103,6 @@ def doubt_height(state: FusionState, node: NodeState, since_t: float, doubt_m2: 
     rows = np.array([state.graph.starts[node.position] + np.arange(3)])
     noise = np.diag([0.0, 0.0, doubt_m2]) + 1e-9 * np.eye(3)
     state.graph.advance(rows, state.graph.reference[rows], np.eye(3)[None], noise[None])
-    if node.mode == "free":
-        # Only units' steps are kept: he may change his height by himself.
-        return
     steps = state.ledger.table("steps")
     told = steps[(steps[:, 1] == node.index) & (steps[:, 0] <= since_t), 0]
     t = float(told.max()) if len(told) else node.pose_t

@@ -27,7 +27,7 @@ class Going:
         times = self._layout.times[walk.first : walk.last + 1, index]
         durations = np.diff(times)
         if walk.way is None:
-            return durations, free_motions(walk.node.role, durations, walk.node.plane_m is not None)
+            return durations, free_motions(walk.node.role, durations)
         return durations, walk.way.between(times[:-1], times[1:])
 
     def part(self, numbers: Numbers) -> Self:

@@ -217,9 +217,9 @@ class Free(NamedTuple):
         return Motion(self.transition, self.noise, residual, self.information)
 
 
-def free_motions(role: str, durations_s: Array, level: bool = False) -> Free:
-    """The motion of a node without PDR, k steps; see `motion.free.free_motion`."""
-    known = {d: free_motion(role, d, level) for d in set(durations_s.tolist())}
+def free_motions(role: str, durations_s: Array) -> Free:
+    """The motion of a node without PDR: a velocity that is forgotten with time, k steps."""
+    known = {d: free_motion(role, d) for d in set(durations_s.tolist())}
     transition = np.array([known[d][0] for d in durations_s.tolist()]).reshape(-1, STATES, STATES)
     noise = np.array([known[d][1] for d in durations_s.tolist()]).reshape(-1, STATES, STATES)
     return Free(transition, noise, inverses(noise))

@@ -81,7 +81,6 @@ def explain(
     across = told[:, :2]
     total = float(np.trace(covariance[:2, :2]))
     doubt[2, 2] = max(doubt[2, 2], node.doubt_up_m2 - float(covariance[2, 2]))
-    doubt[2, 2] += node.mirrored_m2(float(solved.x[start + 2]))
     doubt += swung(told[:, 3 : 3 + len(headings)], headings, start)
     told_scales = told[:, 3 + len(headings) :]
     doubt += doubted(judged, solved.x, told_scales, suspected(problem, solved), start)

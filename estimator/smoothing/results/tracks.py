@@ -140,7 +140,6 @@ def _walked(
         covariance[:, range(3), range(3)] += bridged[:, None] * np.array([1.0, 1.0, 0.1])
         doubt_m2 = walk.node.doubt_up_m2 * walk.way.gone(seconds)
         covariance[:, 2, 2] = np.maximum(covariance[:, 2, 2], doubt_m2)
-    covariance[:, 2, 2] += [walk.node.mirrored_m2(up) for up in places[:, 2].tolist()]
     return [
         TrackPoint(t=t, position_m=tuple_of(p), covariance_m2=upper_triangle(c))
         for t, p, c in zip(seconds.tolist(), places, covariance, strict=True)
@@ -154,9 +153,7 @@ def _led(walk: Walk, states: Array, since: Array, until: Array) -> tuple[Array, 
         parts = walk.way.between(since, until)
         after, _ = led_by(states, parts[:, :3], parts[:, 3:6], durations)
         return after[:, :3], parts[:, [6, 6, 7]]
-    moved = {
-        d: free_motion(walk.node.role, d, walk.node.plane_m is not None) for d in set(durations.tolist())
-    }
+    moved = {d: free_motion(walk.node.role, d) for d in set(durations.tolist())}
     led = np.array([moved[d][0][:3] @ s for d, s in zip(durations.tolist(), states, strict=True)])
     noise = np.array([np.diag(moved[d][1])[:3] for d in durations.tolist()])
     return led, noise

@@ -36,15 +36,3 @@ def test_it_costs_his_image_what_it_has_cost_him(seed: int, by_rad: float) -> No
         there[start : start + 2] = images[number].of(x[start : start + 2])
     assert cost(prior.imaged(images), there) == pytest.approx(cost(prior, x), rel=1e-9, abs=1e-6)
     assert prior.imaged(images).epochs == prior.epochs
-
-
-@given(st.integers(0, 1000), st.floats(-5.0, 5.0))
-def test_across_a_level_plane_it_costs_what_it_has_cost_below(seed: int, plane_m: float) -> None:
-    chance = np.random.default_rng(seed)
-    rows = chance.normal(0.0, 1.0, (SIZE, SIZE))
-    prior = Prior(KEYS, rows.T @ rows, chance.normal(0.0, 1.0, SIZE), chance.normal(0.0, 5.0, SIZE), {0: 1.0})
-    x = chance.normal(0.0, 5.0, SIZE)
-    there = x.copy()
-    there[2], there[5] = 2.0 * plane_m - x[2], -x[5]
-    assert cost(prior.across(0, plane_m), there) == pytest.approx(cost(prior, x), rel=1e-9, abs=1e-6)
-    assert cost(prior.across(1, plane_m), x) == pytest.approx(cost(prior, x), rel=1e-9, abs=1e-6)

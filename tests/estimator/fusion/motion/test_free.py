@@ -23,12 +23,6 @@ def test_two_steps_one_after_the_other_are_one_step_of_their_time() -> None:
     )
 
 
-def test_who_keeps_level_climbs_no_storey_in_a_minute_but_goes_as_far() -> None:
-    (_, usual), (_, level) = free_motion("responder", 60.0), free_motion("responder", 60.0, level=True)
-    assert np.sqrt(level[2, 2]) < 1.0 < 4.0 < np.sqrt(usual[2, 2])
-    np.testing.assert_array_equal(level[:2, :2], usual[:2, :2])
-
-
 @pytest.mark.parametrize("silence_s", [30.0, 300.0, 3_000.0])
 def test_a_node_that_was_silent_for_long_is_found_where_it_is_heard_again(silence_s: float) -> None:
     tracker = KirchhoffTracker(TrackerSettings())
