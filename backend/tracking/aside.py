@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import TypeVar
 
 import msgspec
 
@@ -11,16 +10,15 @@ from backend.log.engine import make_engine
 from backend.log.read import SqlLogReader
 from backend.tracking.fold import IncidentFold, OtherState
 from backend.tracking.heads import Head
-from backend.tracking.put_back import on_one_clock
+from backend.tracking.put_back import earlier, on_one_clock
 from backend.tracking.reading import Decoded, read_block
 from estimator import trackers
 from estimator.estimate import Relative, TrackPoint
-from estimator.evidence import Advice, Evidence, Measurement
+from estimator.evidence import Advice, Evidence
 from estimator.measurements import AnyReading
 from estimator.measurements.imu import Imu, told_until
 
 Smoothed = dict[str, list[TrackPoint]]
-OfAnEpoch = TypeVar("OfAnEpoch", TrackPoint, Evidence, Measurement)
 
 _decode = msgspec.msgpack.Decoder(Smoothed).decode
 
@@ -41,7 +39,7 @@ def smooth_log(database_url: str, head: Head) -> bytes:
     readings, ahead_s = _whole_log(database_url, head)
     smoothed = trackers.smoother(head.tracker, head.settings).smooth(readings)
     if ahead_s:
-        smoothed = {node: [_earlier(point, ahead_s) for point in track] for node, track in smoothed.items()}
+        smoothed = {node: [earlier(point, ahead_s) for point in track] for node, track in smoothed.items()}
     return msgspec.msgpack.encode(smoothed)
 
 
@@ -120,18 +118,14 @@ def _whole_log(database_url: str, head: Head) -> tuple[list[AnyReading], int]:
 
 
 def _told_earlier(evidence: Evidence, by_s: float) -> Evidence:
-    return _earlier(
+    return earlier(
         msgspec.structs.replace(
             evidence,
-            held=[_earlier(one, by_s) for one in evidence.held],
-            rejected=[_earlier(one, by_s) for one in evidence.rejected],
+            held=[earlier(one, by_s) for one in evidence.held],
+            rejected=[earlier(one, by_s) for one in evidence.rejected],
         ),
         by_s,
     )
-
-
-def _earlier(part: OfAnEpoch, by_s: float) -> OfAnEpoch:
-    return msgspec.structs.replace(part, t=part.t - by_s)
 
 
 def _entries(reader: SqlLogReader, head: Head) -> Iterator[Decoded]:

@@ -77,10 +77,10 @@ class GoingOn(msgspec.Struct):
         if not self.ahead_s:
             return record
         parts = {
-            name: tuple(_earlier(part, times, self.ahead_s) for part in getattr(record, name))
+            name: tuple(earlier(part, self.ahead_s, times) for part in getattr(record, name))
             for name, times in _TIMES.items()
         }
-        return _earlier(msgspec.structs.replace(record, **parts), ("t",), self.ahead_s)
+        return earlier(msgspec.structs.replace(record, **parts), self.ahead_s)
 
 
 def on_one_clock(
@@ -104,6 +104,18 @@ def on_one_clock(
     return known, clock.ahead_s
 
 
+def earlier(part: Part, by_s: float, times: Sequence[str] = ("t",)) -> Part:
+    """What is told by this clock, by one that is behind it by so much (s).
+
+    Args:
+        part: it is.
+        by_s: by how much.
+        times: its fields that are epochs (s), or None.
+    """
+    known = {name: getattr(part, name) for name in times}
+    return msgspec.structs.replace(part, **{name: t - by_s for name, t in known.items() if t is not None})
+
+
 def _start(reading: AnyReading) -> float:
     return reading.from_t if isinstance(reading, Displacement) and reading.from_t is not None else reading.t
 
@@ -112,8 +124,3 @@ def _later(reading: AnyReading, by_s: float) -> AnyReading:
     if isinstance(reading, Displacement) and reading.from_t is not None:
         return msgspec.structs.replace(reading, t=reading.t + by_s, from_t=reading.from_t + by_s)
     return msgspec.structs.replace(reading, t=reading.t + by_s)
-
-
-def _earlier(part: Part, times: Sequence[str], by_s: float) -> Part:
-    known = {name: getattr(part, name) for name in times}
-    return msgspec.structs.replace(part, **{name: t - by_s for name, t in known.items() if t is not None})

@@ -46,6 +46,8 @@ export const A_BREAK = { code: "estimator_failed", t: NOON, text: "It broke.", n
 /** What it says when something reported has not been in the picture for seconds. */
 export const A_DELAY = { code: "estimator_behind", t: NOON, text: "It is behind.", node: null } as const;
 
+const NOTHING_ELSE = { alarms: [], notices: [], set_aside: [] };
+
 export function aFrame(nodes: FrameNode[], over: Partial<FrameMessage> = {}): FrameMessage {
   const times = { t: NOON, clock_t: NOON, newest_t: NOON };
   return {
@@ -54,9 +56,7 @@ export function aFrame(nodes: FrameNode[], over: Partial<FrameMessage> = {}): Fr
     seq: 1,
     ...times,
     nodes,
-    alarms: [],
-    notices: [],
-    set_aside: [],
+    ...NOTHING_ELSE,
     ...over,
   };
 }
@@ -69,9 +69,7 @@ export function aDelta(nodes: FrameNode[], over: Partial<DeltaMessage> = {}): De
     seq: 2,
     ...times,
     nodes,
-    alarms: [],
-    notices: [],
-    set_aside: [],
+    ...NOTHING_ELSE,
     ...over,
   };
 }

@@ -9,6 +9,7 @@ import sqlalchemy as sa
 
 from backend.coordination.lease import Leases
 from backend.errors import NotFound
+from backend.log import schema
 from backend.log.base import Snapshot
 from backend.log.derived import SqlDerivedWriter
 from backend.log.engine import writing
@@ -31,6 +32,8 @@ from estimator.measurements.imu import Imu
 from estimator.trackers import kirchhoff
 from estimator.trackers.base import TrackerSettings
 from tests.backend.tracking.conftest import Write, walk
+
+HOUR_S = 3600.0
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -82,6 +85,28 @@ def test_smoothed_tracks_reach_the_web_process_to_the_last_bit(
     readings = [reading for batch in batches for reading in batch]
     assert smoothed == trackers.smoother("kirchhoff", TrackerSettings()).smooth(readings)
     assert smoothed["ff1"]
+
+
+def test_after_the_servers_clock_was_put_back_all_is_told_by_the_clock_that_is_right_now(
+    sqlite_url: str, engine: sa.Engine, store: IncidentStore, write: Write
+) -> None:
+    incident, right_t = store.create("put back", "live"), 1001.0
+    ahead = [[fix(right_t + HOUR_S + second)] for second in range(20)]
+    write(incident.id, [*ahead, *([fix(right_t + second)] for second in range(20, 40))])
+    with writing(engine) as connection:
+        early = schema.batches.c.seq <= len(ahead)
+        connection.execute(
+            sa.update(schema.batches).where(early).values(received=schema.batches.c.received + HOUR_S)
+        )
+    head = head_of(store.get(incident.id))
+    track = smoothed_of(smooth_log(sqlite_url, head))["ff1"]
+    assert (track[0].t, track[-1].t) == pytest.approx((right_t, right_t + 39.0), abs=1.0)
+    evidence = evidence_of_log(sqlite_url, head, "ff1", right_t + 30.0)
+    assert evidence is not None
+    assert evidence.t == pytest.approx(right_t + 30.0, abs=1.0)
+    held = [measurement.t for measurement in evidence.held]
+    assert held
+    assert right_t - 1.0 <= min(held) <= max(held) <= right_t + 30.0
 
 
 def test_without_a_moment_the_whole_log_counts(sqlite_url: str, head: Head, asked: Asked) -> None:
