@@ -26,6 +26,7 @@ from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
 from estimator.graph.scatter import add_motion, add_part, couple, localise, scatter_rows
 from estimator.graph.triangular import inverted
+from estimator.graph.turning import Turning, change_pairs, pivot, turned_along, turning
 from estimator.graph.variable import Variable
 from estimator.inertial.advancing import advance
 from estimator.inertial.boot import Boot
@@ -43,7 +44,7 @@ from estimator.smoothing.keyframes.ways import Way, ways_of
 from estimator.smoothing.learning.learn import noise_scores
 from estimator.smoothing.learning.scores import through
 from estimator.smoothing.learning.slips import gains, unsure
-from estimator.smoothing.problem.turned import change_pairs, moved_from, turn_between, turning
+from estimator.smoothing.problem.turned import moved_from, turn_between
 from estimator.smoothing.readings.arranged import scattered, sigmas
 from estimator.smoothing.readings.curvature import add_bends
 from estimator.smoothing.readings.linear import (
@@ -149,7 +150,8 @@ def _warm_chain() -> None:
     turned_by = turn_between(place[:, :2], place[:, :2])
     turning(turned_by)
     moved_from(x, x, pair, pair, place[0, :2], turned_by)
-    change_pairs(np.eye(2), one, pair, np.zeros((1, 2, 2)))
+    change_pairs(np.eye(2), one, pair, turned_along(x, x, pair, place[0, :2]))
+    pivot(np.eye(len(x)), x, Turning(pair, pair, pair[0]), place[0, :2])
     add_bends(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
 
 
@@ -171,9 +173,20 @@ def _warm_filter() -> None:
     table = np.full((1, FIELDS), 0.5)
     table[0, :2] = ONE, 0.0
     newest = np.array([NEW])
-    none = np.zeros(0, dtype=np.intp)
     told, sums, nobody = np.empty((1, 3)), np.zeros((1, 6)), followed.units_from([], [])
-    hold(table, np.zeros(1), nobody, *graph.storage(), graph.size, none, newest, told, sums, 1)
+    hold(
+        table,
+        np.zeros(1),
+        nobody,
+        *graph.storage(),
+        graph.size,
+        graph.turning(),
+        np.zeros(2),
+        newest,
+        told,
+        sums,
+        1,
+    )
     crossings_in(table, 0)
     graph.add_node(Variable("unit", ""), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     step = np.array([[0.0, 3.0, *(1.0,) * 10]])

@@ -17,8 +17,10 @@ from estimator.fusion.rows.descent import GOOD, INDEFINITE, PREDICTED, RESIDUAL,
 from estimator.fusion.rows.followed import Followed, Units, followed
 from estimator.fusion.rows.foreseen import Foreseen, follow, foresee
 from estimator.fusion.rows.rows import CONSTANT, EXTRA, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
-from estimator.graph.dense import Array, Indices
+from estimator.fusion.rows.unturned import unturn
+from estimator.graph.dense import Array
 from estimator.graph.filter_kernels import scatter
+from estimator.graph.turning import Turning
 
 LEVER_M = 20.0
 """A heading's error at the far end of a room's way."""
@@ -63,8 +65,11 @@ def _hold(
     state: FusionState, table: Array, epochs: Array, units: Units, told: Array, sums: Array
 ) -> tuple[Taken, Followed]:
     graph = state.graph
-    headings, newest = graph.firsts("unit"), state.links.table
-    return hold(table, epochs, units, *graph.storage(), graph.size, headings, newest, told, sums, ITERATIONS)
+    changed, base_m = graph.turning(), np.array(state.base_place()[:2])
+    newest = state.links.table
+    return hold(
+        table, epochs, units, *graph.storage(), graph.size, changed, base_m, newest, told, sums, ITERATIONS
+    )
 
 
 def _learn(state: FusionState, table: Array, told: Array, sums: Array) -> None:
@@ -84,7 +89,8 @@ def hold(
     vector: Array,
     reference: Array,
     n: int,
-    headings: Indices,
+    changed: Turning,
+    base_m: Array,
     links: Array,
     told: Array,
     sums: Array,
@@ -100,7 +106,8 @@ def hold(
         vector: the same.
         reference: the same.
         n: the same.
-        headings: the same.
+        changed: the same.
+        base_m: the same.
         links: the same.
         told: the same.
         sums: the same.
@@ -108,7 +115,8 @@ def hold(
     """
     seen = foresee(table, matrix, vector[:n], reference[:n])
     rivals = followed(table, epochs, units, seen, reference[:n])
-    return take_in(table, seen, matrix, vector, reference, n, headings, links, told, sums, iterations), rivals
+    taken = take_in(table, seen, matrix, vector, reference, n, changed, base_m, links, told, sums, iterations)
+    return taken, rivals
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -119,7 +127,8 @@ def take_in(
     vector: Array,
     reference: Array,
     n: int,
-    headings: Indices,
+    changed: Turning,
+    base_m: Array,
     links: Array,
     told: Array,
     sums: Array,
@@ -134,7 +143,8 @@ def take_in(
         vector: b, as long, changed.
         reference: x, as long, changed.
         n: rows in use.
-        headings: rows of the units' headings.
+        changed: which of its numbers change when the map is turned.
+        base_m: east and north of the base, 2 (m).
         links: the newest reading on each link, see `tally`; changed.
         told: takes what each reading was off by, the variance of its prediction and the probability that it
             is good, m × 3: `RESIDUAL`, `PREDICTED`, `GOOD`.
@@ -148,11 +158,15 @@ def take_in(
     found = descend(table, seen, iterations)
     if found.outcome != SOLVED:
         return found.outcome, 0.0, False, 0
-    x, turned_rad = reference[:n].copy(), 0.0
+    x, before, turned_rad = reference[:n].copy(), reference[:n].copy(), 0.0
     follow(seen, found.x, x)
-    for row in headings:
+    follow(seen, found.before, before)
+    jacobian = unturn(
+        table, seen.columns, found, before, matrix, vector[:n], reference[:n], x, changed, base_m
+    )
+    for row in changed.headings:
         turned_rad = max(turned_rad, abs(x[row] - reference[row]))
-    scatter(matrix, vector, seen.columns, found.jacobian, found.information, found.residual)
+    scatter(matrix, vector, seen.columns, jacobian, found.information, found.residual)
     vector[:n], reference[:n] = 0.0, x
     for r in range(len(table)):
         told[r, RESIDUAL], told[r, PREDICTED] = found.residual[r], found.predicted[r]

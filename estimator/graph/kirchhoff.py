@@ -13,6 +13,7 @@ import numpy as np
 from estimator.graph.dense import Array, Cholesky, Indices, factorise, inverse, mended, solve
 from estimator.graph.filter_kernels import advance, loosen, scatter
 from estimator.graph.triangular import inverted
+from estimator.graph.turning import Turning
 from estimator.graph.variable import DIMENSION, Variable, VariableKind
 
 SMALL = 64
@@ -94,6 +95,12 @@ class Kirchhoff:
             rows = [row for variable, row in self.starts.items() if variable.kind == kind]
             found = self._firsts[kind] = np.array(rows, dtype=np.intp)
         return found
+
+    def turning(self) -> Turning:
+        """Which numbers change when the map is turned as a whole; not to be changed."""
+        pair = np.arange(2)
+        places, speeds = (self.firsts(kind)[:, None] + pair for kind in ("position", "velocity"))
+        return Turning(places, speeds, self.firsts("unit"))
 
     def copy(self) -> Self:
         """An independent copy."""

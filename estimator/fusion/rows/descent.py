@@ -33,6 +33,7 @@ class Found(NamedTuple):
         outcome: `SOLVED`; `UNSOLVABLE`: they make no solvable system; `INDEFINITE`: L itself is not positive
             definite.
         x: the estimate of the numbers that they depend on, k.
+        before: where they were linearised last, k.
         jacobian: derivatives by which they were solved last, m × 8.
         information: what each has told by these, m.
         residual: z − h(x) of each, m.
@@ -43,6 +44,7 @@ class Found(NamedTuple):
 
     outcome: int
     x: Array
+    before: Array
     jacobian: Array
     information: Array
     residual: Array
@@ -63,13 +65,13 @@ def descend(table: Array, seen: Foreseen, iterations: int) -> Found:
     m, k, prior, pull, start = len(table), len(seen.x), seen.prior, seen.pull, seen.x
     sigma, outliers = table[:, SIGMA].copy(), table[:, OUTLIERS].copy()
     shift, spread = table[:, SHIFT].copy(), table[:, SPREAD].copy()
-    x, matrix, held = start.copy(), np.empty((k, k)), np.zeros(k)
+    x, before, matrix, held = start.copy(), start.copy(), np.empty((k, k)), np.zeros(k)
     columns, jacobian, residual = seen.numbers.at, seen.jacobian.copy(), seen.residual.copy()
     ahead, forecast, own = np.empty((m, WIDTH)), np.empty(m), seen.own.copy()
     factor, unscale, predicted, good = np.empty((k, k)), np.empty(k), seen.predicted.copy(), np.empty(m)
     wider, information = np.zeros(m), np.zeros(m)
     if not seen.solvable:
-        return Found(INDEFINITE, x, jacobian, information, residual, predicted, good, False)
+        return Found(INDEFINITE, x, start, jacobian, information, residual, predicted, good, False)
     nominal = sigma**2
     curved = widen(table, columns, jacobian, residual, x, own, wider)
     if curved:
@@ -84,7 +86,7 @@ def descend(table: Array, seen: Foreseen, iterations: int) -> Found:
         gradient = pull - held
         scatter(matrix, gradient, columns, jacobian, information, weighted.residual)
         if not np.isfinite(gradient).all() or not factorised(matrix, factor, unscale):
-            return Found(UNSOLVABLE, x, jacobian, information, residual, predicted, good, doubted)
+            return Found(UNSOLVABLE, x, before, jacobian, information, residual, predicted, good, doubted)
         step = solved(factor, unscale, gradient)
         before, forecast[:] = x.copy(), residual
         doubted = False
@@ -123,13 +125,14 @@ def descend(table: Array, seen: Foreseen, iterations: int) -> Found:
         predicted[:] = 0.0
         weighted = weigh(residual, sigma, predicted, outliers, shift, spread)
         good[:], information[:], jacobian[:] = weighted.good, weighted.information, ahead
+        before = x.copy()
         matrix[:] = prior
         scatter(matrix, np.zeros(k), columns, jacobian, information, weighted.residual)
         if factorised(matrix, factor, unscale):
             joint(factor, unscale, seen.numbers, own)
             variances(own, jacobian, predicted)
     outcome = SOLVED if np.isfinite(x).all() else UNSOLVABLE
-    return Found(outcome, x, jacobian, information, residual, predicted, good, doubted)
+    return Found(outcome, x, before, jacobian, information, residual, predicted, good, doubted)
 
 
 @njit(cache=True, error_model="numpy")

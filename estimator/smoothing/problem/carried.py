@@ -11,20 +11,13 @@ from estimator.fusion.memory.prior import SIZES, Key, Prior
 from estimator.graph.dense import Array, Indices
 from estimator.graph.kernels import Integers
 from estimator.graph.kirchhoff import marginalised
+from estimator.graph.turning import Turning, change_pairs, pivot, turning
 from estimator.smoothing.chain.chain import Chain
 from estimator.smoothing.chain.groups import Group
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.numbers import Numbers
 from estimator.smoothing.keyframes.walks import HEADING, PLACES, STATES
-from estimator.smoothing.problem.turned import (
-    Turning,
-    change_pairs,
-    moved_from,
-    pivot,
-    turn,
-    turn_between,
-    turning,
-)
+from estimator.smoothing.problem.turned import moved_from, turn, turn_between
 
 OLDEST = 1.0 / 6.0
 """Share of a window that goes when it has become long."""

@@ -35,7 +35,7 @@ X = np.array([POWER_DBM, EXPONENT])
 def found(residual: Array, predicted: Array, good: Array) -> Found:
     """What readings have led to."""
     none = np.zeros(len(residual))
-    return Found(SOLVED, X, np.zeros((len(none), 8)), none, residual, predicted, good, False)
+    return Found(SOLVED, X, X, np.zeros((len(none), 8)), none, residual, predicted, good, False)
 
 
 def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_link() -> None:
@@ -123,8 +123,10 @@ def held(graph: Kirchhoff, heading_rad: float) -> tuple[tuple[int, float, bool, 
     table[0, KIND], table[0, A], table[0, VALUE] = ONE, 0, heading_rad
     table[0, SIGMA], table[0, NOMINAL], table[0, OUTLIERS] = 0.5, 0.5, 0.0
     newest, sums = np.array([NEW]), np.zeros((1, 6))
-    headings, epochs, nobody = graph.firsts("unit"), np.zeros(1), units_from([], [])
-    found, _ = hold(table, epochs, nobody, *graph.storage(), graph.size, headings, newest, told, sums, 6)
+    changed, base_m, epochs, nobody = graph.turning(), np.zeros(2), np.zeros(1), units_from([], [])
+    found, _ = hold(
+        table, epochs, nobody, *graph.storage(), graph.size, changed, base_m, newest, told, sums, 6
+    )
     return found, told
 
 

@@ -5,6 +5,7 @@ The noise of a motion depends on the estimate: GTSAM gets it frozen at the solut
 
 from collections import defaultdict
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import gtsam
@@ -190,11 +191,13 @@ def test_the_smoothed_solution_costs_no_more_than_gtsams_optimum(problem: Proble
 
 
 def test_solved_until_it_rests_everything_is_where_gtsam_puts_it(problem: Problem) -> None:
+    """Beside a radio powers have an edge, and optima on both sides of it: GTSAM's better one counts."""
     layout, start = problem.layout, problem.layout.start()
-    ours = problem.solve(start, SLACKS_M)
+    begun = problem.solve(start, SLACKS_M)
+    ours = begun
     for _ in range(AGAIN):
         ours = problem.solve(ours.x, resting=AT_REST)
-    theirs = optimum(problem, start, ours.x)
+    theirs = min((optimum(problem, x, ours.x) for x in (start, begun.x)), key=partial(misfit, problem))
     size = layout.length * layout.width
     off = np.abs(ours.x - theirs)
     stands = size + max(layout.stands.values()) + 3

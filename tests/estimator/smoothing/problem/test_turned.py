@@ -16,7 +16,7 @@ from estimator.simulate.base import Report
 from estimator.smoothing.chain.chain import Remainder
 from estimator.smoothing.keyframes.walks import unit_motion
 from estimator.smoothing.keyframes.ways import Way
-from estimator.smoothing.problem.turned import Turning, pivot, turn_between, turned
+from estimator.smoothing.problem.turned import turn_between, turned
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.lag import Lag
 from tests.estimator.smoothing.readings.test_jacobians import steps_of, unit_states
@@ -100,29 +100,6 @@ def test_a_place_that_has_jumped_is_left_as_it_was_said() -> None:
     size = layout.width + layout.border
     left = Remainder(np.eye(size), np.ones(size))
     assert turned(left, layout, BASE_M, was, now) is left
-
-
-@given(seeds, st.floats(-50.0, 50.0), st.floats(-50.0, 50.0))
-def test_the_map_turns_about_what_does_not_move_with_it(seed: int, east_m: float, north_m: float) -> None:
-    """Two places, a velocity and a heading; readings tell of any change but a turn about one place."""
-    chance, held_m = np.random.default_rng(seed), np.array([east_m, north_m])
-    places, speeds, headings = np.array([[0, 1], [2, 3]]), np.array([[4, 5]]), np.array([6])
-    reference = chance.normal(0.0, 30.0, 7)
-    free = np.zeros(7)
-    for e, n in (*places, *speeds):
-        from_m = held_m if e < 4 else BASE_M
-        free[[e, n]] = -(reference[n] - from_m[1]), reference[e] - from_m[0]
-    free[6] = 1.0
-    rows = chance.normal(0.0, 1.0, (12, 7))
-    rows -= np.outer(rows @ free, free) / (free @ free)
-    found_m = pivot(rows.T @ rows, reference, Turning(places, speeds, headings), BASE_M)
-    assert found_m == pytest.approx(held_m, abs=0.1)
-
-
-def test_where_no_reading_holds_the_map_it_turns_about_the_base() -> None:
-    base_m, none = np.array([3.0, -4.0]), np.zeros(0, dtype=np.intp)
-    alone = Turning(np.array([[0, 1]]), none.reshape(0, 2), none)
-    assert pivot(np.zeros((2, 2)), np.ones(2), alone, base_m) == pytest.approx(base_m)
 
 
 def test_who_begins_away_from_any_base_does_not_learn_where_north_is_from_beacons() -> None:
