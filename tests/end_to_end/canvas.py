@@ -24,9 +24,10 @@ _PIXELS = """(canvas, {colour, tolerance}) => {
     left = Math.min(left, column); right = Math.max(right, column);
     top = Math.min(top, row); bottom = Math.max(bottom, row);
   }
-  const middle_x = canvas.clientWidth / 2, middle_y = canvas.clientHeight / 2;
-  if (count === 0) return {count, x: 0, y: 0, middle_x, middle_y, left: 0, right: 0, top: 0, bottom: 0};
-  return {count: count / ratio ** 2, x: x / count / ratio, y: y / count / ratio, middle_x, middle_y,
+  const [middle_x, middle_y] = [canvas.clientWidth / 2, canvas.clientHeight / 2];
+  const map = {middle_x, middle_y, drawn_height: height / ratio};
+  if (count === 0) return {count, x: 0, y: 0, ...map, left: 0, right: 0, top: 0, bottom: 0};
+  return {count: count / ratio ** 2, x: x / count / ratio, y: y / count / ratio, ...map,
           left: left / ratio, right: right / ratio, top: top / ratio, bottom: bottom / ratio};
 }"""
 
@@ -51,13 +52,17 @@ _DRAWN = """async () => {
 
 @dataclass(frozen=True)
 class Pixels:
-    """Where on the map a colour lies (CSS pixels, y downwards): centroid and extent, and the map's middle."""
+    """Where on the map a colour lies (CSS pixels, y downwards): centroid and extent, and the map's middle.
+
+    It was drawn for the map's own height, except in the one frame in which a row above it comes or goes.
+    """
 
     count: float
     x: float
     y: float
     middle_x: float
     middle_y: float
+    drawn_height: float
     left: float
     right: float
     top: float
@@ -67,6 +72,11 @@ class Pixels:
     def from_middle(self) -> tuple[float, float]:
         """Its centroid from the middle of the map, which stays where it is when rows come and go above it."""
         return self.x - self.middle_x, self.y - self.middle_y
+
+    @property
+    def of_this_height(self) -> bool:
+        """Whether it was drawn for the height that the map has, and so is where the map shows its place."""
+        return abs(self.drawn_height - 2 * self.middle_y) < 1
 
     @property
     def width(self) -> float:
@@ -107,14 +117,14 @@ class MapSeen:
         return "diamond" if share < 0.68 else "round" if share < 0.93 else "square"
 
     def settled_mark(self, colour: str) -> Pixels:
-        """A crew's mark once two looks, some frames apart, find it in the same place."""
+        """A crew's mark once two looks, some frames apart, find it in one place of a map drawn to size."""
         seen: list[Pixels] = []
 
         def still() -> Pixels | None:
             # However slow the machine: what was to be drawn is drawn.
             self.page.evaluate(_DRAWN)
             seen.append(self.colour(colour))
-            if len(seen) < 2 or not seen[-1].count:
+            if len(seen) < 2 or not seen[-1].count or not seen[-1].of_this_height:
                 return None
             before, now = seen[-2:]
             return now if abs(now.x - before.x) < 0.5 and abs(now.y - before.y) < 0.5 else None
