@@ -12,6 +12,11 @@ import sqlalchemy as sa
 from tests.needs import missing
 from tests.running import Post, Server, running
 
+# As the server and the worker do, before anything imports numpy: the threads of a matrix of a few rows wait
+# for each other for longer than they reckon, and those of one test keep the next one from its processor.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
 # The gate tries the same examples each time: it speaks of the change, not of luck. At a desk they vary.
 hypothesis.settings.register_profile("gate", derandomize=True, deadline=None)
 hypothesis.settings.register_profile("desk", deadline=None)
