@@ -118,12 +118,16 @@ def rolled(strides: int, above_m: float) -> Gait:
 
 
 def felt(places: Array, attitudes: Rotation, start_t: float, heading_rad: float) -> Gait:
-    """What an inertial unit feels that goes through places and attitudes, half a step after each other."""
+    """What an inertial unit feels that goes through places and attitudes, half a step after each other.
+
+    Its samples lie in memory as read ones do: for others all of the navigation would be compiled once more.
+    """
     second = (places[2:] - 2.0 * places[1:-1] + places[:-2]) / HALF_S**2
     force = attitudes[1:-1].inv().apply(second + np.array([0.0, 0.0, GRAVITY_MPS2]))[::2]
     turned = (attitudes[:-2].inv() * attitudes[2:]).as_rotvec() / STEP_S
     t: Array = start_t + STEP_S * np.arange(len(force), dtype=np.float64)
-    return Gait(t, force, turned[::2], places[2::2][: len(force)] - places[0], heading_rad)
+    samples = np.ascontiguousarray(force), np.ascontiguousarray(turned[::2])
+    return Gait(t, *samples, places[2::2][: len(force)] - places[0], heading_rad)
 
 
 def smooth(share: Array) -> Array:

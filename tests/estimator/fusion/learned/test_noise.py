@@ -62,7 +62,7 @@ def test_independent_readings_keep_their_full_worth() -> None:
 
 
 def test_however_often_one_listens_through_a_floor_it_tells_no_more_than_the_floor_lets() -> None:
-    told = [through_sigma(5.0, True, k) ** -2 for k in range(1, 1001)]
+    told = [through_sigma(5.0, True, float(k)) ** -2 for k in range(1, 1001)]
     assert told[0] == pytest.approx(1.0 / (5.0**2 + physics.FLOOR_SIGMA[1] ** 2))
     assert sum(told) == pytest.approx(physics.FLOOR_SIGMA[1] ** -2, rel=1e-3)
     assert through_sigma(0.3, False, 7.0) == pytest.approx(np.hypot(0.3, physics.FLOOR_SIGMA[0]))

@@ -113,7 +113,7 @@ def test_a_range_changes_by_noise_and_by_what_its_ends_run_or_fly() -> None:
 
 
 def test_a_minute_of_one_echo_tells_hardly_more_than_one_reading_of_it() -> None:
-    spread = np.array([noise(6.0, alike)[2] for alike in range(1, 300)])
+    spread = np.array([noise(6.0, float(alike))[2] for alike in range(1, 300)])
     assert (1.0 / spread**2).sum() < 7.0 / RANGE_NOISE.spread**2
 
 
