@@ -1,5 +1,8 @@
 """Of whom it is asked where he may be instead: the sooner, the less his readings fit, and nobody never."""
 
+from copy import deepcopy
+from functools import cache
+
 import numpy as np
 from msgspec.structs import replace
 
@@ -15,10 +18,15 @@ from tests.estimator.smoothing.images.test_flips import solved_of
 CREW = 8
 
 
+@cache
+def solved_crew() -> tuple[Problem, Solved]:
+    ways = {f"ff{i}": through((0.0, 2.0 * i), (20.0, 2.0 * i)) for i in range(CREW)}
+    return solved_of(readings_of(ways, ONE, dict.fromkeys(ways, 0)))
+
+
 def crew() -> tuple[Problem, Solved, Loose]:
     """Eight people beside each other whom units that may face anything have led; no image is told."""
-    ways = {f"ff{i}": through((0.0, 2.0 * i), (20.0, 2.0 * i)) for i in range(CREW)}
-    problem, solved = solved_of(readings_of(ways, ONE, dict.fromkeys(ways, 0)))
+    problem, solved = deepcopy(solved_crew())
     for i, walk in enumerate(problem.layout.walks):
         problem.layout.walks[i] = walk._replace(node=replace(walk.node, otherwise=()))
     return problem, solved, {i: np.zeros(problem.layout.length, dtype=np.bool_) for i in range(CREW)}
