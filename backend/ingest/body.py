@@ -9,6 +9,9 @@ from backend.errors import NotUnderstood, TooLarge, WrongMediaType
 _GZIP = 31
 """zlib's `wbits` for a gzip header and trailer with the largest window."""
 
+MAX_MEMBERS = 10_000
+"""One for each reading of a batch. Empty ones take no room and would hold the event loop for seconds."""
+
 
 class ClientGone(Exception):  # noqa: N818 - names the condition
     """The client hung up before its body was whole."""
@@ -25,7 +28,7 @@ async def read_body(scope: Scope, receive: Receive, limit: int) -> bytes:
     Raises:
         WrongMediaType: it is not JSON, or encoded otherwise than with gzip.
         TooLarge: it is over the limit; found out before it is read or decompressed further.
-        NotUnderstood: the gzip stream is broken, cut short, or followed by something.
+        NotUnderstood: the gzip is broken, cut short, followed by something else, or in too many members.
         ClientGone: the client hung up.
     """
     compressed = _check_headers(scope, limit)
@@ -55,7 +58,7 @@ async def read_body(scope: Scope, receive: Receive, limit: int) -> bytes:
 
 
 class Gunzip:
-    """Decompresses a gzip stream of one member, never beyond a limit.
+    """Decompresses gzip, of one member or of several (RFC 1952, 2.2), never beyond a limit.
 
     Args:
         limit: bytes that may come out of it.
@@ -64,6 +67,7 @@ class Gunzip:
     def __init__(self, limit: int) -> None:
         self._limit = limit
         self._left = limit
+        self._members = 1
         self._stream = zlib.decompressobj(_GZIP)
 
     def feed(self, part: bytes) -> bytes:
@@ -71,23 +75,18 @@ class Gunzip:
 
         Raises:
             TooLarge: more comes out than the limit allows.
-            NotUnderstood: it is no gzip, or something follows the stream.
+            NotUnderstood: it is no gzip, or something else follows it, or it has too many members.
         """
-        if self._stream.eof:
-            self._refuse_rest(part)
-            return b""
-        try:
-            out = self._stream.decompress(part, self._left + 1)
-        except zlib.error as error:
-            raise NotUnderstood(f"The body is announced as gzip and is not: {error}.") from error
-        if len(out) > self._left:
-            raise _too_large(self._limit)
-        self._left -= len(out)
-        self._refuse_rest(self._stream.unused_data)
-        return out
+        out = []
+        while part:
+            if self._stream.eof:
+                self._begin_member()
+            out.append(self._decompressed(part))
+            part = self._stream.unused_data
+        return b"".join(out)
 
     def finish(self) -> None:
-        """Check that the stream is whole.
+        """Check that the last member is whole.
 
         Raises:
             NotUnderstood: it has been cut short.
@@ -95,10 +94,26 @@ class Gunzip:
         if not self._stream.eof:
             raise NotUnderstood("The gzip stream of the body is cut short: send the batch again.")
 
-    @staticmethod
-    def _refuse_rest(rest: bytes) -> None:
-        if rest:
-            raise NotUnderstood("Something follows the gzip stream of the body: send one gzip member.")
+    def _begin_member(self) -> None:
+        self._members += 1
+        if self._members > MAX_MEMBERS:
+            raise NotUnderstood(f"The body has more than {MAX_MEMBERS} gzip members: send it as one.")
+        self._stream = zlib.decompressobj(_GZIP)
+
+    def _decompressed(self, part: bytes) -> bytes:
+        try:
+            out = self._stream.decompress(part, self._left + 1)
+        except zlib.error as error:
+            where = (
+                "announced as gzip and is not"
+                if self._members == 1
+                else f"no gzip after its member {self._members - 1}"
+            )
+            raise NotUnderstood(f"The body is {where}: {error}.") from error
+        if len(out) > self._left:
+            raise _too_large(self._limit)
+        self._left -= len(out)
+        return out
 
 
 def _check_headers(scope: Scope, limit: int) -> bool:

@@ -35,7 +35,7 @@ def openapi_operation() -> dict[str, Any]:
             "does not refuse its batch: it is listed in `rejected`, kept in the log as it came, and not "
             "given to the estimator. An alarm from a clock ahead is taken, and counts as of when it came. "
             "A batch may have no readings. Where an object names a field twice, "
-            "the last one counts. The body may be gzip (`Content-Encoding: gzip`), in one member."
+            "the last one counts. The body may be gzip (`Content-Encoding: gzip`), in one member or several."
         ),
         "parameters": [{"name": "incident", "in": "path", "required": True, "schema": {"type": "string"}}],
         "requestBody": {

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from backend.errors import NotUnderstood, TooLarge, WrongMediaType
-from backend.ingest.body import ClientGone, read_body
+from backend.ingest.body import MAX_MEMBERS, ClientGone, read_body
 from tests.backend.ingest.asgi import Body, scope
 
 LIMIT = 1_000
@@ -31,6 +31,25 @@ def test_a_body_is_read_whole_however_it_is_cut(data: bytes, size: int, compress
             assert read(Body(parts), GZIP) == data
     else:
         assert read(Body(cut(data, size)), JSON) == data
+
+
+@given(data=st.lists(st.binary(max_size=200), min_size=2, max_size=5), size=st.integers(1, LIMIT))
+def test_gzip_of_several_members_is_one_body(data: list[bytes], size: int) -> None:
+    sent = b"".join(gzip.compress(one, 1) for one in data)
+    if len(sent) <= LIMIT and sum(map(len, data)) <= LIMIT:
+        assert read(Body(cut(sent, size)), GZIP) == b"".join(data)
+
+
+@pytest.mark.parametrize("size", [7, 10 * LIMIT])
+def test_members_are_too_large_together_though_each_is_within_the_limit(size: int) -> None:
+    with pytest.raises(TooLarge):
+        read(Body(cut(gzip.compress(bytes(LIMIT)) + gzip.compress(b"x"), size)), GZIP)
+
+
+def test_members_without_end_are_refused_soon() -> None:
+    body = Body(cut(gzip.compress(b"") * (MAX_MEMBERS + 20), 64 * 1024))
+    with pytest.raises(NotUnderstood, match="members"):
+        asyncio.run(read_body(scope("/", GZIP), body, 1_000_000))
 
 
 @pytest.mark.parametrize("parts", [1, 7])
@@ -64,7 +83,7 @@ DAMAGED = {
     "cut in its header": WHOLE[:5],
     "empty": b"",
     "followed by another byte": WHOLE + b"x",
-    "twice": WHOLE * 2,
+    "followed by half of another member": WHOLE + WHOLE[:9],
     "not compressed": b"{}",
     "zlib": zlib.compress(b"{}"),
     "with another check sum": WHOLE[:-5] + b"12345",
