@@ -34,8 +34,8 @@ class Readiness(BaseModel):
     """What this process needs for its work.
 
     Attributes:
-        log: the database answers, has not refused what was last written, and its disk has room, where it is a
-            file here.
+        log: the database answers, its writer is at work and was not refused what it wrote last, and its disk
+            has room, where it is a file here.
         worker: an estimator worker is connected and ready to compute; it takes seconds to begin. Without one
             telemetry is still taken, and dots go stale.
     """
@@ -52,7 +52,7 @@ def health_router(
     Args:
         engine: of the log's database.
         workers: the link to them.
-        refusal: why the newest batch could not be written, where it could not.
+        refusal: why the log cannot be written, where that is known.
     """
     router = APIRouter(tags=["health"])
 

@@ -78,6 +78,7 @@ class GroupCommit:
         self._watcher: asyncio.Task[None] | None = None
         self._answers = 0
         self._hangs = False
+        self._gone = False
         self._closing = asyncio.Event()
         self._refusal: tuple[float, LogUnwritable] | None = None
         _queued.set_function(lambda: self._bytes)
@@ -124,9 +125,15 @@ class GroupCommit:
 
     @property
     def refusal(self) -> LogUnwritable | None:
-        """Why the newest batch could not be written, if that was lately; None where it was, or none came."""
+        """Why the log cannot be written, as is known now; None where nothing speaks against it.
+
+        The writer hangs, or has ended and the next one is not at work yet, or what came last could not be
+        written, if that was lately.
+        """
         if self._hangs:
             return _hanging()
+        if self._gone:
+            return _gone()
         if self._refusal is None:
             return None
         at, problem = self._refusal
@@ -157,9 +164,11 @@ class GroupCommit:
         self._unsent_bytes = 0
 
     def take(self, written: Written) -> None:
-        """Answer the requests of a group that has been dealt with."""
+        """Answer the requests of a group that has been dealt with; one of nothing tells that it is there."""
         self._answers += 1
-        self._hangs = False
+        self._hangs = self._gone = False
+        if not written.outcomes:
+            return
         _commit_seconds.observe(written.seconds)
         _group_size.observe(len(written.outcomes))
         for appended, refused in written.outcomes:
@@ -183,7 +192,7 @@ class GroupCommit:
         """Nobody knows whether what waits was written: say that it was not, so that it is sent again."""
         self._link = None
         self._unsent, self._unsent_bytes = [], 0
-        self._hangs = False
+        self._hangs, self._gone = False, True
         self._refuse_waiting("writer_gone", _gone)
         self._waiting, self._bytes = deque(), 0
 

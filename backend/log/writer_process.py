@@ -13,6 +13,7 @@ import sys
 import time
 from collections import deque
 from collections.abc import Sequence
+from contextlib import suppress
 
 import sqlalchemy as sa
 import structlog
@@ -32,19 +33,18 @@ log = structlog.get_logger(__name__)
 
 
 def run(link: socket.socket) -> None:
-    """Write groups until the other side is gone and all that came is written."""
+    """Say that it is there, and write groups until the other side is gone and all that came is written."""
     inbox = Inbox(link)
     url = inbox.url()
     if url is None:
         return
     engine = make_engine(url, checkpoints=True)
-    while group := inbox.group():
-        start = time.perf_counter()
-        outcomes = write(engine, group)
-        try:
+    with suppress(OSError):  # else nobody waits for the answer any more
+        link.sendall(written_frame(0.0, []))
+        while group := inbox.group():
+            start = time.perf_counter()
+            outcomes = write(engine, group)
             link.sendall(written_frame(time.perf_counter() - start, outcomes))
-        except OSError:
-            return  # nobody waits for the answer any more
     engine.dispose()
 
 

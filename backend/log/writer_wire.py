@@ -1,7 +1,7 @@
 """What the web process and the log's writer process say to each other, over a pair of sockets.
 
 To the writer: the database's URL, then batches, each a head in MessagePack and the body as it came. Back: for
-each group written, what became of its batches, in their order.
+each group written, what became of its batches, in their order; first a group of nothing, when it is there.
 """
 
 import struct

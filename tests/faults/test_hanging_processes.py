@@ -67,6 +67,25 @@ def test_while_the_logs_writer_hangs_gateways_are_refused_and_the_server_says_th
     assert post.frame(incident, min_seq=3)["seq"] == 3
 
 
+def test_while_the_logs_writer_is_started_again_the_server_says_that_it_is_not_ready(at_work: Server) -> None:
+    (writer,) = at_work.writer_pids()
+    with Post(at_work.url).http as http:
+
+        def readiness() -> httpx2.Response:
+            return http.get(at_work.url + "/readyz")
+
+        assert readiness().json()["log"] is True
+        os.kill(writer, signal.SIGKILL)
+        eventually(lambda: at_work.writer_pids() not in ([writer], []))
+        # The next one is there as a process, and is not at work yet.
+        starting = readiness()
+        assert starting.status_code == 503
+        assert "starts again by itself" in starting.json()["detail"]
+        assert "retry-after" in starting.headers
+        eventually(lambda: readiness().status_code == 200)
+        assert readiness().json()["log"] is True
+
+
 def test_a_worker_that_hangs_is_replaced_and_what_came_meanwhile_is_shown(at_work: Server) -> None:
     post = Post(at_work.url)
     incident = post.open_incident()
