@@ -1,6 +1,7 @@
 """The map before the commander's eyes: which colours lie where on its canvas, and in which shape."""
 
 from dataclasses import dataclass
+from urllib.parse import quote
 
 from playwright.sync_api import Page
 
@@ -98,6 +99,11 @@ class MapSeen:
 
     def __init__(self, page: Page) -> None:
         self.page = page
+
+    def opens_before_anybody_is_there(self, url: str, incident: str) -> None:
+        """Open the screen on an incident in which no responder is known yet."""
+        self.page.goto(f"{url}/#incident={quote(incident)}")
+        self.page.get_by_text("No responder has been heard of yet.").wait_for()
 
     def colour(self, colour: str, tolerance: int = 0) -> Pixels:
         """The pixels of the map within `tolerance` of a colour in each channel: a mark's are exact."""

@@ -87,6 +87,29 @@ def test_the_ellipse_around_a_fix_has_its_95_percent_size_and_grows_while_nothin
     assert grown / pixels_per_metre == pytest.approx(2 * 2.448 * 5**0.5, rel=0.1)
 
 
+def test_the_map_shows_everybody_who_comes_with_the_ellipse_until_the_commander_moves_it(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    heard(post, incident, base(T0))
+    commander.sits_at_a_tablet()
+    commander.opens_before_anybody_is_there(server.url, incident)
+    heard(post, incident, responder(T0, "near", "A", [0, 5, 0]))
+    commander.settled_mark(FIRST_CREW)
+    # Far outside of what is seen, and perhaps another 25 m to the north.
+    heard(post, incident, responder(T0 + 1, "unsure", "B", [0, 65, 0], sigma_m=10.0))
+    near, unsure = commander.settled_mark(FIRST_CREW), commander.settled_mark(SECOND_CREW)
+    ellipse = commander.colour(SECOND_CREW, tolerance=24)
+    assert ellipse.height / (near.y - unsure.y) == pytest.approx(2 * 2.448 * 10 / 60, rel=0.15)
+    assert ellipse.height == pytest.approx(ellipse.width, rel=0.05)
+
+    commander.presses("Shift+ArrowLeft")
+    moved = commander.settled_mark(SECOND_CREW)
+    heard(post, incident, responder(T0 + 2, "farther", "D", [900, 700, 0]))
+    commander.sees("FARTHER", "Was live")
+    assert commander.settled_mark(SECOND_CREW).x == pytest.approx(moved.x, abs=1)
+
+
 def test_a_storey_button_leaves_the_others_as_shadows(
     server: Server, post: Post, commander: Commander
 ) -> None:

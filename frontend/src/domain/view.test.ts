@@ -80,6 +80,14 @@ describe("fitting", () => {
     expect(views.fitsWell(fitted, { west_m: 0, east_m: 8, south_m: 0, north_m: 8 }, margins)).toBe(false);
   });
 
+  test("to more than must be seen is not wanted again for that, nor when what is more grows", () => {
+    const whole = { west_m: -60, east_m: 100, south_m: -25, north_m: 55 };
+    const fitted = views.fitted(view, whole, margins);
+    expect(views.fitsWell(fitted, bounds, margins)).toBe(false);
+    expect(views.fitsWell(fitted, bounds, margins, whole)).toBe(true);
+    expect(views.fitsWell(fitted, bounds, margins, { ...whole, east_m: 140 })).toBe(true);
+  });
+
   test("does not fill the map with one lone responder", () => {
     const alone = { west_m: 3, east_m: 3, south_m: 4, north_m: 4 };
     expect(views.fitted(view, alone, margins).pixelsPerMetre).toBeLessThan(60);

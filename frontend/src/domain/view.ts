@@ -51,7 +51,7 @@ export function marginsOf({ width, text }: Pick<View, "width" | "text">): Margin
 export const MIN_PIXELS_PER_METRE = 0.02;
 export const MAX_PIXELS_PER_METRE = 400;
 /** Fitting never shows less than this (m): one responder alone is no reason to fill the map with a dot. */
-const LEAST_SPAN_M = 12;
+export const LEAST_SPAN_M = 12;
 
 export const FIRST_VIEW: View = { east_m: 0, north_m: 0, pixelsPerMetre: 12, width: 1, height: 1, text: 1 };
 
@@ -138,8 +138,11 @@ export function fitted(view: View, bounds: Bounds, margins: Margins): View {
   return pan(centred, (margins.left - margins.right) / 2, (margins.top - margins.bottom) / 2);
 }
 
-/** Whether the bounds lie inside the margins and fill a fair part of them: then a fit can wait. */
-export function fitsWell(view: View, bounds: Bounds, margins: Margins): boolean {
+/**
+ * Whether the bounds lie inside the margins and fill a fair part of them: then a fit can wait.
+ * A fit to more than must be seen, `whole`, is not taken for one that is too wide.
+ */
+export function fitsWell(view: View, bounds: Bounds, margins: Margins, whole: Bounds = bounds): boolean {
   const [left, bottom] = toScreen(view, bounds.west_m, bounds.south_m);
   const [right, top] = toScreen(view, bounds.east_m, bounds.north_m);
   const inside =
@@ -147,7 +150,7 @@ export function fitsWell(view: View, bounds: Bounds, margins: Margins): boolean 
     right <= view.width - margins.right / 2 &&
     top >= margins.top / 2 &&
     bottom <= view.height - margins.bottom / 2;
-  const best = fitted(view, bounds, margins);
+  const best = fitted(view, whole, margins);
   return inside && view.pixelsPerMetre > best.pixelsPerMetre * 0.6;
 }
 

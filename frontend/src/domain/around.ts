@@ -1,0 +1,45 @@
+/** What of the map everybody needs who is on it, with how sure that is. */
+import { K95 } from "./ellipse";
+import type { Picture } from "./picture";
+import type { FrameNode, Position } from "./types";
+import { type Bounds, boundsOf, LEAST_SPAN_M } from "./view";
+
+export type PlacedNode = Pick<FrameNode, "node" | "role" | "covariance_m2"> & {
+  readonly position_m: Position;
+};
+
+/** Whom the map is fitted to: who is out is not there, and a UAV is outside, but for one that is chosen. */
+export function toBeSeen(picture: Picture | null, selected: string | null): PlacedNode[] {
+  const all = [...(picture?.nodes.values() ?? [])].flatMap(({ state }) =>
+    state.position_m == null || state.status === "retired" ? [] : { ...state, position_m: state.position_m },
+  );
+  const inside = all.filter(({ role, node }) => role !== "uav" || node === selected);
+  return inside.length > 0 ? inside : all;
+}
+
+/** The box around the marks of nodes; null where there are none. */
+export function boundsOfMarks(nodes: readonly PlacedNode[]): Bounds | null {
+  return boundsOf(nodes.map(({ position_m }) => position_m));
+}
+
+/**
+ * The box around nodes and the 95 % ellipses of responders; null where there are none. No ellipse reaches
+ * farther than half of what the marks span: one who is lost must not make all others a dot.
+ */
+export function boundsAround(nodes: readonly PlacedNode[]): Bounds | null {
+  const marks = boundsOfMarks(nodes);
+  if (marks === null) return null;
+  const most_m = Math.max(LEAST_SPAN_M, marks.east_m - marks.west_m, marks.north_m - marks.south_m) / 2;
+  const reach_m = (variance_m2: number) => Math.min(most_m, K95 * Math.sqrt(Math.max(0, variance_m2)));
+  return boundsOf(
+    nodes.flatMap(({ role, position_m, covariance_m2 }): Position[] => {
+      if (role !== "responder" || covariance_m2 == null) return [position_m];
+      const [e, n, u] = position_m;
+      const [east_m, north_m] = [reach_m(covariance_m2[0]), reach_m(covariance_m2[3])];
+      return [
+        [e - east_m, n - north_m, u],
+        [e + east_m, n + north_m, u],
+      ];
+    }),
+  );
+}
