@@ -1,19 +1,23 @@
 """What converters share: readings in order of time become lines of a recorded log."""
 
 import csv
-from collections.abc import Iterable, Iterator, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TextIO
+from typing import TextIO, TypeVar
 
 import msgspec
 
 from backend.errors import CommandRefused, in_reach
 from estimator.measurements import AnyReading, Imu
 
+Known = TypeVar("Known")
 Vector3 = tuple[float, float, float]
 BATCH_S = 1.0
 KNOWN_SIGMA_M = 0.05
 """How well a position that the data set gives was surveyed, where it does not say."""
+ANEW = "copy the data set anew from where it is published"
 
 
 class NotTheDataSet(CommandRefused):
@@ -81,35 +85,143 @@ def _line(gateway: str, number: int, readings: list[AnyReading]) -> bytes:
     return msgspec.json.encode(_Line(gateway, f"{gateway}-{number:06d}", sent, readings)) + b"\n"
 
 
-def rows(path: Path) -> Iterator[dict[str, str]]:
+class Row:
+    """A row of a file, which says where it stands when it does not hold what it must.
+
+    Args:
+        where: the file and the line.
+        fields: by the name of the column, or its number from 0.
+    """
+
+    def __init__(self, where: str, fields: Mapping[str | int, str | None]) -> None:
+        self._where = where
+        self._fields = fields
+
+    def word(self, column: str | int) -> str:
+        """What stands in a column.
+
+        Raises:
+            NotTheDataSet: there is no such column, or the row ends before it.
+        """
+        word = self._fields.get(column)
+        if word is None:
+            raise NotTheDataSet(f"{self._where}: column {column} is missing: {ANEW}")
+        return word
+
+    def number(self, column: str | int) -> float:
+        """The number in a column.
+
+        Raises:
+            NotTheDataSet: there is none, or none that is finite.
+        """
+        word = self.word(column)
+        try:
+            number = float(word)
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
+            raise NotTheDataSet(f"{self._where}: column {column} is {word!r}, and not a number: {ANEW}")
+        return number
+
+    def above_0(self, column: str | int) -> float:
+        """The number in a column, which is above 0.
+
+        Raises:
+            NotTheDataSet: it is not.
+        """
+        number = self.number(column)
+        if number <= 0.0:
+            raise NotTheDataSet(f"{self._where}: column {column} is {number:g}, and not above 0: {ANEW}")
+        return number
+
+    def one_of(self, known: Mapping[str, Known], column: str | int) -> Known:
+        """What is known under the name in a column.
+
+        Raises:
+            NotTheDataSet: nothing is.
+        """
+        word = self.word(column)
+        if word not in known:
+            raise NotTheDataSet(f"{self._where}: column {column} is {word!r}, which nothing explains: {ANEW}")
+        return known[word]
+
+    def whole(self, column: str | int) -> int:
+        """The whole number in a column, however large.
+
+        Raises:
+            NotTheDataSet: there is none.
+        """
+        word = self.word(column)
+        try:
+            return int(word)
+        except ValueError as error:
+            refused = f"{self._where}: column {column} is {word!r}, and not a whole number: {ANEW}"
+            raise NotTheDataSet(refused) from error
+
+
+def rows(path: Path) -> Iterator[Row]:
     """The rows of a CSV file with a header.
 
     Raises:
-        NotTheDataSet: there is no such file.
+        NotTheDataSet: there is no such file, or none with rows.
     """
-    with opened(path) as file:
-        yield from csv.DictReader(file)
+    with opened(path) as file, _as_text(path):
+        line = None
+        for line in (table := csv.DictReader(file)):
+            yield Row(f"{path}, line {table.line_num}", line)
+    if line is None:
+        raise _nothing_in(path)
 
 
-def numbers(path: Path) -> list[dict[str, float]]:
-    """The rows of a CSV file with a header and nothing but numbers.
+def numbers(path: Path, columns: Sequence[str]) -> list[dict[str, float]]:
+    """Columns of a CSV file with a header.
+
+    Args:
+        path: of the file.
+        columns: their names.
 
     Raises:
-        NotTheDataSet: there is no such file.
+        NotTheDataSet: there is no such file, or none with rows, or one of them lacks a number.
     """
-    return [{name: float(word) for name, word in row.items()} for row in rows(path)]
+    return [{name: row.number(name) for name in columns} for row in rows(path)]
 
 
-def words(path: Path) -> Iterator[list[str]]:
-    """The words of each line of a text file.
+def words(path: Path) -> Iterator[Row]:
+    """The lines of a text file that are not empty, their words as columns.
 
     Raises:
-        NotTheDataSet: there is no such file.
+        NotTheDataSet: there is no such file, or nothing in it.
     """
-    with opened(path) as file:
-        for line in file:
+    found = False
+    with opened(path) as file, _as_text(path):
+        for number, line in enumerate(file, start=1):
             if line.strip():
-                yield line.split()
+                found = True
+                yield Row(f"{path}, line {number}", dict(enumerate(line.split())))
+    if not found:
+        raise _nothing_in(path)
+
+
+def text_of(path: Path) -> str:
+    """All of a text file.
+
+    Raises:
+        NotTheDataSet: there is no such file, or it is none of text.
+    """
+    with opened(path) as file, _as_text(path):
+        return file.read()
+
+
+@contextmanager
+def _as_text(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise NotTheDataSet(f"{path} is no text with columns ({error}): {ANEW}") from error
+
+
+def _nothing_in(path: Path) -> NotTheDataSet:
+    return NotTheDataSet(f"{path} holds no rows: {ANEW}")
 
 
 def opened(path: Path) -> TextIO:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import msgspec
 
-from backend.recordings.datasets.base import KNOWN_SIGMA_M, NotTheDataSet, opened, rows
+from backend.recordings.datasets.base import ANEW, KNOWN_SIGMA_M, NotTheDataSet, rows, text_of
 from estimator.measurements import AnyReading, Node, Rssi
 
 NAME = "ble_rssi_danis"
@@ -35,10 +35,10 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
     sensors = _sensors(folder / "sensors.txt")
     heard: list[AnyReading] = [
         Rssi(
-            t=float(row["timestamp"]),
-            a=sensors[row["mac_sensor"]][0],
+            t=row.number("timestamp"),
+            a=row.one_of(sensors, "mac_sensor")[0],
             b=CARRIED,
-            dbm=float(row["rssi_dbm"]),
+            dbm=row.number("rssi_dbm"),
         )
         for row in rows(folder / f"{recording}.csv")
     ]
@@ -53,8 +53,11 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
 
 def _sensors(path: Path) -> dict[str, tuple[str, tuple[float, float, float]]]:
     """Name and place of each sensor, by its address."""
-    with opened(path) as file:
-        found = re.search(r"^Dongles:(\{.*\})\s*$", file.read(), re.MULTILINE)
+    found = re.search(r"^Dongles:(\{.*\})\s*$", text_of(path), re.MULTILINE)
     if found is None:
-        raise NotTheDataSet(f"{path} has no line 'Dongles:{{…}}' with the sensors' places")
-    return {address: (name, place) for address, (place, _, name) in _decode_sensors(found[1]).items()}
+        raise NotTheDataSet(f"{path} has no line 'Dongles:{{…}}' with the sensors' places: {ANEW}")
+    try:
+        sensors = _decode_sensors(found[1])
+    except msgspec.DecodeError as error:
+        raise NotTheDataSet(f"{path}, line 'Dongles:{{…}}': {error}: {ANEW}") from error
+    return {address: (name, place) for address, (place, _, name) in sensors.items()}

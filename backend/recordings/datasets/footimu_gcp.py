@@ -18,6 +18,7 @@ BOOT = "boot"
 RATE_HZ = 200.0
 G_MPS2 = 9.80665
 GAUSS_UT = 100.0
+FORCE, TURN, FIELD = ("ax_g", "ay_g", "az_g"), ("gx", "gy", "gz"), ("mx", "my", "mz")
 GIVEN = 2
 """Which tile is given, from 0."""
 STANDING_RADPS, STANDING_S = 1.0, 0.1
@@ -35,7 +36,7 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
         NotTheDataSet: the file is missing.
     """
     del recording
-    table = numbers(folder / f"{TRIAL}.csv")
+    table = numbers(folder / f"{TRIAL}.csv", ("t_s", *FORCE, *TURN, *FIELD))
     since_t, until_t, east, north = tiles(folder)[GIVEN]
     fix = Position(
         t=0.5 * (since_t + until_t), node=BOOT, position_m=(east, north, 0.0), sigma_m=(KNOWN_SIGMA_M,) * 3
@@ -61,9 +62,9 @@ def tiles(folder: Path) -> list[tuple[float, float, float, float]]:
     Raises:
         NotTheDataSet: a file is missing, or it stood as often as no tiles are given for.
     """
-    places = [(row["x_m"], row["y_m"]) for row in numbers(folder / f"{TRIAL}_gcp.csv")]
-    stood = _standstills(numbers(folder / f"{TRIAL}.csv"))
-    if len(stood) != len(places):
+    places = [(row["x_m"], row["y_m"]) for row in numbers(folder / f"{TRIAL}_gcp.csv", ("x_m", "y_m"))]
+    stood = _standstills(numbers(folder / f"{TRIAL}.csv", ("t_s", *TURN)))
+    if len(stood) != len(places) or len(places) <= GIVEN:
         raise NotTheDataSet(f"{folder}: the boot stood {len(stood)} times, and {len(places)} tiles are given")
     return [(*between, *place) for between, place in zip(stood, places, strict=True)]
 

@@ -8,7 +8,7 @@ which the anchors tell its place; its heading is to be found. Heights are not gi
 import math
 from pathlib import Path
 
-from backend.recordings.datasets.base import KNOWN_SIGMA_M, words
+from backend.recordings.datasets.base import KNOWN_SIGMA_M, Row, words
 from estimator.measurements import AnyReading, Displacement, Node, Range
 
 NAME = "labyrinth_uwb"
@@ -28,24 +28,24 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
     """
     del recording
     table = list(words(folder / "Indoor_UWB_Input.txt"))
-    ranged = [row for row in table if row[0] == "range2"]
-    wheels = [row for row in table if row[0] == "odom2diff"]
-    since = min(float(row[1]) for row in table)
+    ranged = [row for row in table if row.word(0) == "range2"]
+    wheels = [row for row in table if row.word(0) == "odom2diff"]
+    since = min(row.number(1) for row in table)
     introduced: list[AnyReading] = [
         Node(t=since, node=ROBOT, role="responder", callsign="Robot", heading_sigma_rad=math.pi)
     ]
-    places = {_anchor(row): (float(row[4]), float(row[5]), 0.0) for row in ranged}
+    places = {_anchor(row): (row.number(4), row.number(5), 0.0) for row in ranged}
     introduced += [
         Node(t=since, node=name, role="anchor", position_m=place, sigma_m=KNOWN_SIGMA_M)
         for name, place in sorted(places.items())
     ]
     ranges = [
         Range(
-            t=float(row[1]),
+            t=row.number(1),
             a=ROBOT,
             b=_anchor(row),
-            range_m=float(row[2]),
-            sigma_m=math.sqrt(float(row[3])),
+            range_m=row.number(2),
+            sigma_m=math.sqrt(row.above_0(3)),
             technology="uwb",
         )
         for row in ranged
@@ -53,11 +53,11 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
     return [*introduced, *_driven(wheels, since), *ranges]
 
 
-def _anchor(row: list[str]) -> str:
-    return f"anchor-{row[6]}"
+def _anchor(row: Row) -> str:
+    return f"anchor-{row.word(6)}"
 
 
-def _driven(wheels: list[list[str]], since: float) -> list[AnyReading]:
+def _driven(wheels: list[Row], since: float) -> list[AnyReading]:
     """Displacements in a frame whose x axis is where the robot faces at first.
 
     Yaw rate = (second velocity - first) / (2 · wheel base), as the authors' own library libRSF reads these
@@ -66,7 +66,8 @@ def _driven(wheels: list[list[str]], since: float) -> list[AnyReading]:
     driven: list[AnyReading] = []
     heading = 0.0
     for row in wheels:
-        t, first, second, sideways, base_m = (float(word) for word in row[1:6])
+        t, first, second, sideways = (row.number(column) for column in range(1, 5))
+        base_m = row.above_0(5)
         span_s = t - since
         turn_rad = (second - first) / (2.0 * base_m) * span_s
         along = heading + turn_rad / 2.0

@@ -28,24 +28,24 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
     """
     del recording
     start = next(rows(folder / "groundtruth.csv"))
-    since, heading = float(start["t_s"]), float(start["heading_rad"])
+    since, heading = start.number("t_s"), start.number("heading_rad")
     introduced: list[AnyReading] = [
         Node(
             t=since,
             node=ROBOT,
             role="responder",
             callsign="Mower",
-            position_m=(float(start["x_m"]), float(start["y_m"]), 0.0),
+            position_m=(start.number("x_m"), start.number("y_m"), 0.0),
             sigma_m=KNOWN_SIGMA_M,
             heading_sigma_rad=0.01,
         )
     ]
     ranges = [
         Range(
-            t=float(row["t_s"]),
+            t=row.number("t_s"),
             a=ROBOT,
-            b=f"beacon-{row['beacon_id']}",
-            range_m=float(row["range_raw_m"]),
+            b=f"beacon-{row.word('beacon_id')}",
+            range_m=row.number("range_raw_m"),
             technology="uwb",
         )
         for row in rows(folder / "ranges.csv")
@@ -54,7 +54,7 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
     driven: list[AnyReading] = []
     # The unit's frame has x east as the first pose has it; what it turns afterwards is its own error.
     for row in rows(folder / "odometry.csv"):
-        t, dist_m, turn_rad = float(row["t_s"]), float(row["dist_m"]), float(row["dheading_rad"])
+        t, dist_m, turn_rad = row.number("t_s"), row.number("dist_m"), row.number("dheading_rad")
         along = heading + turn_rad / 2.0  # the chord of an arc
         heading += turn_rad
         delta_m = (dist_m * math.cos(along), dist_m * math.sin(along), 0.0)

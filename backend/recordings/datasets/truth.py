@@ -32,12 +32,12 @@ def truth_of(name: str, folder: Path) -> dict[str, Truth]:
 def _plaza1(folder: Path, recording: str) -> dict[str, Truth]:
     del recording
     robot = [
-        (float(r["t_s"]), float(r["x_m"]), float(r["y_m"]), 0.0) for r in rows(folder / "groundtruth.csv")
+        (r.number("t_s"), r.number("x_m"), r.number("y_m"), 0.0) for r in rows(folder / "groundtruth.csv")
     ]
     found = {"robot": _truth(robot)}
     for row in rows(folder / "beacons.csv"):
-        found[f"beacon-{row['beacon_id']}"] = _truth(
-            [(robot[0][0], float(row["x_m"]), float(row["y_m"]), 0.0)]
+        found[f"beacon-{row.word('beacon_id')}"] = _truth(
+            [(robot[0][0], row.number("x_m"), row.number("y_m"), 0.0)]
         )
     return found
 
@@ -46,7 +46,9 @@ def _labyrinth(folder: Path, recording: str) -> dict[str, Truth]:
     del recording
     table = words(folder / "Indoor_UWB_GT.txt")
     return {
-        "robot": _truth([(float(r[1]), float(r[2]), float(r[3]), 0.0) for r in table if r[0] == "point2"])
+        "robot": _truth(
+            [(r.number(1), r.number(2), r.number(3), 0.0) for r in table if r.word(0) == "point2"]
+        )
     }
 
 
@@ -54,7 +56,7 @@ def _hanyang(folder: Path, recording: str) -> dict[str, Truth]:
     table = rows(folder / f"{recording or 'LOS_A1'}_trajectory.csv")
     return {
         "tag": _truth(
-            [(float(r["timestamp"]) / 1e9, float(r["x"]), float(r["y"]), float(r["z"])) for r in table]
+            [(r.number("timestamp") / 1e9, r.number("x"), r.number("y"), r.number("z")) for r in table]
         )
     }
 
@@ -63,7 +65,7 @@ def _danis(folder: Path, recording: str) -> dict[str, Truth]:
     table = rows(folder / f"{recording or 'rectangular_with_rotation'}.csv")
     return {
         "beacon1": _truth(
-            [(float(r["timestamp"]), float(r["x_m"]), float(r["y_m"]), float(r["z_m"])) for r in table]
+            [(r.number("timestamp"), r.number("x_m"), r.number("y_m"), r.number("z_m")) for r in table]
         )
     }
 

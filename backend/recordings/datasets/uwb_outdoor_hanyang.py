@@ -28,11 +28,11 @@ def readings(folder: Path, recording: str | None = None) -> list[AnyReading]:
     places: dict[str, tuple[float, float, float]] = {}
     for number in ANCHORS:
         for row in rows(folder / f"{recording}_A{number}.csv"):
-            anchor = f"anchor-{row['field.id']}"
-            places[anchor] = (float(row["field.x"]), float(row["field.y"]), float(row["field.z"]))
+            anchor = f"anchor-{row.word('field.id')}"
+            places[anchor] = (row.number("field.x"), row.number("field.y"), row.number("field.z"))
             # Stamps are whole nanoseconds, which a float of Unix seconds holds to 0.2 µs.
-            t = int(row["field.stamp"]) / 1e9
-            measured_m = float(row["field.distanceFromTag"])
+            t = row.whole("field.stamp") / 1e9
+            measured_m = row.number("field.distanceFromTag")
             ranges.append(Range(t=t, a=TAG, b=anchor, range_m=measured_m, technology="uwb"))
     start = min(reading.t for reading in ranges)
     introduced: list[AnyReading] = [Node(t=start, node=TAG, role="responder", callsign="Tag")]

@@ -1,6 +1,7 @@
 """The public data sets become logs that hold every row once, in order, and nothing of the truth."""
 
 import math
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 
@@ -177,3 +178,51 @@ def test_a_folder_without_the_data_is_named(tmp_path: Path) -> None:
     for name in ("plaza1", "labyrinth_uwb", "uwb_outdoor_hanyang", "ble_rssi_danis"):
         with pytest.raises(NotTheDataSet, match=str(tmp_path)):
             convert(name, tmp_path)
+
+
+DAMAGED = {
+    "empty": lambda _text: b"",
+    "no text": lambda text: b"\xff\x00" + text,
+    "a row that ends too soon": lambda text: _with_last_line(text, lambda line: line[:4]),
+    "words for numbers": lambda text: _with_last_line(
+        text, lambda line: line.replace(b"1", b"x").replace(b"0", b"x")
+    ),
+}
+
+
+def _with_last_line(text: bytes, change: Callable[[bytes], bytes]) -> bytes:
+    *others, last = text.strip().splitlines()
+    return b"\n".join([*others, change(last)])
+
+
+@pytest.mark.parametrize("damage", DAMAGED.values(), ids=DAMAGED)
+@pytest.mark.parametrize(
+    ("name", "read"),
+    [
+        ("plaza1", "groundtruth.csv odometry.csv ranges.csv"),
+        ("labyrinth_uwb", "Indoor_UWB_Input.txt"),
+        ("uwb_outdoor_hanyang", "LOS_A1_A3.csv"),
+        ("ble_rssi_danis", "sensors.txt straight_01.csv"),
+        ("footimu_gcp", "trial36.csv trial36_gcp.csv"),
+        ("footimu_vicon", "2017-11-22-11-22-03.csv"),
+    ],
+)
+def test_a_damaged_file_is_refused_by_its_name(
+    name: str, read: str, damage: Callable[[bytes], bytes], shared_data: Path, tmp_path: Path
+) -> None:
+    for damaged in read.split():
+        folder = tmp_path / damaged
+        folder.mkdir()
+        for path in (shared_data / name).iterdir():
+            (folder / path.name).symlink_to(path)
+        (folder / damaged).unlink()
+        whole = (shared_data / name / damaged).read_bytes()
+        if damaged == "groundtruth.csv":  # of which the first row alone is read
+            whole = b"\n".join(whole.splitlines()[:2])
+        if damaged == "sensors.txt":  # of which one line is
+            whole = next(line for line in whole.splitlines() if line.startswith(b"Dongles:"))
+        (folder / damaged).write_bytes(damage(whole))
+        chosen = ":straight_01" if name == "ble_rssi_danis" else ""
+        with pytest.raises(NotTheDataSet, match=damaged) as refused:
+            list(convert(name + chosen, folder))
+        assert "\n" not in str(refused.value)
