@@ -1,7 +1,10 @@
 """The public API as a gateway uses it over an unreliable link: the same batch until it is acknowledged."""
 
 import asyncio
+import ipaddress
 import random
+import re
+from contextlib import suppress
 from typing import Any
 
 import httpx2
@@ -16,6 +19,7 @@ LONGEST_PAUSE_S = 5.0
 TIMEOUT_S = 10.0
 BUSY = frozenset({429, 502, 503, 504})
 GONE = frozenset({404, 409})
+HOST_NAME = re.compile(r"(?=.{1,253}$)[A-Za-z0-9_-]{1,63}(\.[A-Za-z0-9_-]{1,63})*\.?")
 
 
 class IncidentGone(Exception):  # noqa: N818 - names the condition
@@ -39,7 +43,7 @@ class Client:
 
     def __init__(self, url: str, token: str | None) -> None:
         # What is no address would never be answered, and be tried again for ever.
-        if not url.startswith(("http://", "https://")) or not _host_of(url):
+        if not url.startswith(("http://", "https://")) or not _names_a_server(url):
             raise CommandRefused(f"--url takes an address such as http://127.0.0.1:8000, not {url!r}")
         headers = {} if token is None else {"authorization": f"Bearer {token}"}
         # A proxy of the environment has no business between a gateway and its server.
@@ -129,12 +133,20 @@ class Client:
             pause_s = min(2 * pause_s, LONGEST_PAUSE_S)
 
 
-def _host_of(url: str) -> str:
-    """The host that a URL names; empty where it names none, or is no URL."""
+def _names_a_server(url: str) -> bool:
+    """Whether a URL names a host and a port that there can be."""
     try:
-        return httpx2.URL(url).host
+        parsed = httpx2.URL(url)
     except httpx2.InvalidURL:
-        return ""
+        return False
+    if parsed.port is not None and not 0 < parsed.port < 65536:
+        return False
+    host = parsed.raw_host.decode("ascii")  # names of other alphabets as they are looked up
+    if HOST_NAME.fullmatch(host):
+        return True
+    with suppress(ValueError):
+        return bool(ipaddress.ip_address(host.partition("%")[0]))
+    return False
 
 
 def _retry_after_s(answer: httpx2.Response, otherwise_s: float) -> float:

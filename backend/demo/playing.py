@@ -15,7 +15,9 @@ from estimator.simulate import Scenario, scenario, scenario_names
 log = structlog.get_logger(__name__)
 
 NAME_SUFFIX = " (demo)"
-"""Tells our incidents from real ones: those left open by an earlier run are closed by it."""
+"""Tells our incidents from real ones: those that an earlier run left open are closed by the next."""
+LEFT_AFTER_S = 5.0
+"""A gateway of ours posts more often: where nothing comes for so long, nobody plays any more."""
 GOODBYE_S = 1.0
 BETWEEN_S = 5.0
 
@@ -45,9 +47,7 @@ async def play(
     client = Client(url, token)
     try:
         await client.wait_until_ready()
-        for left in await client.active_incidents():
-            if left["name"] == played.incident + NAME_SUFFIX:
-                await client.close_incident(left["id"])
+        await _close_what_was_left(client, played.incident + NAME_SUFFIX)
         while True:
             await _play_once(client, played, speed)
             if once:
@@ -74,6 +74,23 @@ def play_until_stopped(
             await play(url, token, scenario_name, seed, speed, once)
 
     asyncio.run(main())
+
+
+async def _close_what_was_left(client: Client, name: str) -> None:
+    """Close open incidents of a name in which nobody plays: a run that was killed cannot close its own."""
+    before = {one["id"]: one["last_seq"] for one in await client.active_incidents() if one["name"] == name}
+    if not before:
+        return
+    log.info("open incidents of the same name: looking whether somebody plays", incidents=list(before))
+    await asyncio.sleep(LEFT_AFTER_S)
+    for one in await client.active_incidents():
+        if one["id"] not in before:
+            continue
+        if one["last_seq"] > before[one["id"]]:
+            log.warning("somebody else plays this incident; it goes on", incident=one["id"])
+        else:
+            log.warning("an earlier run left this incident open; it is closed", incident=one["id"])
+            await client.close_incident(one["id"])
 
 
 async def _play_once(client: Client, played: Scenario, speed: float) -> None:

@@ -29,6 +29,8 @@ NO_DATABASE = "postgresql://127.0.0.1:1/nowhere"
         (["export", "Drill", "--database", NO_DATABASE], "--database"),
         (["demo", "--url", "127.0.0.1:8000"], "--url takes an address"),
         (["demo", "--url", "http://[::1"], "--url takes an address"),
+        (["demo", "--url", "http://a b/"], "--url takes an address"),
+        (["demo", "--url", "http://127.0.0.1:80000"], "--url takes an address"),
         (["demo", "--scenario", "picnic"], "--scenario is one of"),
         (["serve", "--port", "0", "--data", "/dev/null"], "--data /dev/null cannot be used"),
         (["import", "none.ndjson", "--incident", "Drill"], "none.ndjson cannot be used: No such file"),

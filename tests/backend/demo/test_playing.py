@@ -94,13 +94,30 @@ def test_the_incident_has_the_scenarios_storeys_and_is_closed_at_its_end(field_s
 
 
 def test_incidents_that_an_earlier_demo_left_open_are_closed_and_others_are_not(
-    field_server: FieldServer,
+    field_server: FieldServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(playing, "LEFT_AFTER_S", 0.1)
     name = scenario("paper-a", 1).incident
     left, real = {"name": f"{name} (demo)", "state": "active"}, {"name": name, "state": "active"}
     field_server.incidents = {"i1": left | {"id": "i1"}, "i2": real | {"id": "i2"}}
     played(field_server)
     assert [i["state"] for i in field_server.incidents.values()] == ["closed", "active", "closed"]
+
+
+def test_an_incident_that_another_demo_plays_goes_on(
+    field_server: FieldServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(playing, "LEFT_AFTER_S", 2.0)
+
+    async def play_twice() -> None:
+        first = asyncio.create_task(play(field_server.url, None, "office-fire", 1))
+        await asyncio.to_thread(eventually, lambda: bool(field_server.batches))
+        await play(field_server.url, None, "office-fire", 2, speed=FAST, once=True)
+        assert [one["state"] for one in field_server.incidents.values()] == ["active", "closed"]
+        first.cancel()
+        await asyncio.gather(first, return_exceptions=True)
+
+    asyncio.run(asyncio.wait_for(play_twice(), 60.0))
 
 
 def test_when_the_incident_is_closed_by_others_the_next_one_begins(
