@@ -86,10 +86,14 @@ class Incident(Value):
     closed: float | None = Field(description="Unix seconds; null while it is active")
     last_seq: int = Field(ge=0, description="the newest entry of its log; 0 if it has none")
     first_t: float | None = Field(
-        description="first second that can be shown, Unix seconds; null if none. On a live clock none that "
-        "is more than 6 h before the first batch came, if there is another: a clock was wrong"
+        description="first second that can be shown, Unix seconds; null if none. On a live clock none "
+        "before `earliest_t`, if there is another"
     )
     last_t: float | None = Field(description="last second that can be shown, Unix seconds; null if none")
+    earliest_t: float | None = Field(
+        description="on a live clock: what is told of earlier than this, 6 h before the first batch came, "
+        "Unix seconds, comes from a clock that is wrong; null on a recorded one"
+    )
     stretches: list[Stretch] = Field(
         min_length=1,
         description="what it was set to, and from when on: the first as it was opened, the last holds now",

@@ -22,9 +22,13 @@ _first_came = (
     .scalar_subquery()
 )
 _first = sa.select(sa.func.min(frames.c.second)).where(frames.c.incident == incidents.c.id)
-_first_trusted = _first.where(
-    frames.c.second >= sa.case((incidents.c.clock == "live", _first_came - HELD_BACK_S), else_=0)
+_earliest = sa.case(
+    (
+        incidents.c.clock == "live",
+        sa.func.coalesce(_first_came, sa.cast(incidents.c.created, sa.BigInteger)) - HELD_BACK_S,
+    )
 )
+_first_trusted = _first.where(frames.c.second >= sa.func.coalesce(_earliest, 0))
 _shown = sa.select(
     incidents,
     sa.func.coalesce(
@@ -34,6 +38,7 @@ _shown = sa.select(
     .where(frames.c.incident == incidents.c.id)
     .scalar_subquery()
     .label("last_t"),
+    _earliest.label("earliest_t"),
 )
 _stretches = sa.select(stretches).order_by(stretches.c.incident, stretches.c.number)
 _BASE32 = "0123456789abcdefghjkmnpqrstvwxyz"
@@ -87,13 +92,14 @@ class IncidentStore:
             last_seq=0,
             first_t=None,
             last_t=None,
+            earliest_t=None,
             stretches=[opened],
         )
         with writing(self._engine) as connection:
-            values = incident.model_dump(exclude={"first_t", "last_t", "stretches"})
+            values = incident.model_dump(exclude={"first_t", "last_t", "earliest_t", "stretches"})
             connection.execute(sa.insert(incidents).values(values))
             _begin(connection, incident.id, 0, opened)
-        return incident
+            return _one(connection, _shown, incident.id)
 
     def get(self, incident: str) -> Incident:
         """One incident.

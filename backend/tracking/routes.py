@@ -22,6 +22,7 @@ from backend.tracking.smoothing import Smoothing
 from backend.tracking.tracks import live_tracks, rounded
 from estimator.estimate import Relative, TrackPoint
 from estimator.measurements.base import LATEST_T
+from estimator.measurements.node import Role
 
 ASK_WITHIN_S = 5.0
 
@@ -108,6 +109,10 @@ def tracking_router(
         node: Annotated[
             str | None, Query(min_length=1, max_length=64, description="only this one; all, without it")
         ] = None,
+        role: Annotated[
+            list[Role] | None,
+            Query(description="only nodes that have one of these roles now; all, without it"),
+        ] = None,
         start: Annotated[
             float | None,
             moment("first second, Unix seconds; `first_t` without it", alias="from"),
@@ -132,15 +137,19 @@ def tracking_router(
         folded = channel.seq >= known.last_seq  # what is not may name any node
         if node is not None and folded and all(one.node != node for one in channel.record.nodes):
             raise NotFound(f"No reading of this incident has named {node!r}.")
+        wanted = None if node is None else {node}
+        if role is not None:
+            of_role = {one.node for one in channel.record.nodes if one.role in role}
+            wanted = of_role if wanted is None else wanted & of_role
         start = known.first_t if start is None else start
         if view == "live":
             newest = None
             if channel.record.t is not None and channel.record.t.is_integer():
                 newest = int(channel.record.t), channel.record
-            shown = await asyncio.to_thread(live_tracks, reader, incident, node, start, to, step, newest)
+            shown = await asyncio.to_thread(live_tracks, reader, incident, wanted, start, to, step, newest)
             return await asyncio.to_thread(_tracks_as_json, shown, decimals)
         smoothed = await smoothing.smoothed(head_of(channel.incident))
-        chosen = smoothed if node is None else {name: smoothed[name] for name in smoothed if name == node}
+        chosen = {name: track for name, track in smoothed.items() if wanted is None or name in wanted}
         return await asyncio.to_thread(lambda: _tracks_as_json(_tracks(chosen, start, to, step), decimals))
 
     return router

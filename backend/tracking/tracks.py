@@ -1,6 +1,6 @@
 """Tracks as they were shown: the recorded rows, presented at their whole second."""
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 import numpy as np
 
@@ -28,7 +28,7 @@ Point = tuple[float, float, float, float, float, float, float, float, float, flo
 def live_tracks(
     reader: LogReader,
     incident: str,
-    node: str | None,
+    wanted: Container[str] | None,
     start: float | None,
     end: float | None,
     step_s: int,
@@ -39,7 +39,7 @@ def live_tracks(
     Args:
         reader: of the recorded rows.
         incident: whose.
-        node: only this one; None: all.
+        wanted: only these nodes; None: all.
         start: first second, Unix seconds; None: the first recorded one.
         end: last second, Unix seconds; None: the last recorded one.
         step_s: seconds from point to point; points fall on its multiples.
@@ -53,7 +53,7 @@ def live_tracks(
     points = 0
     for second, record in _seconds(reader, incident, start, end, step_s, newest):
         for known in record.nodes:
-            if node is not None and known.node != node:
+            if wanted is not None and known.node not in wanted:
                 continue
             covariance = covariance_at(known, second)
             if known.position_m is None or covariance is None or known.retired:

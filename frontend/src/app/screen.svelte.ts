@@ -9,7 +9,7 @@ import { blindElsewhere, callsElsewhere } from "../domain/elsewhere";
 import { knownNow } from "../domain/known-now";
 import type { LevelChoice } from "../domain/levels";
 import { presenceOf } from "../domain/presence";
-import { isMoving, limitsOf, whileUnheard } from "../domain/staleness";
+import { isMoving, limitsOf, MOVING, whileUnheard } from "../domain/staleness";
 import { withStoreysAged } from "../domain/storey-age";
 import { toldAt } from "../domain/stretches";
 import { type Extent, extentOf } from "../domain/timeline";
@@ -30,8 +30,8 @@ import { TracksAround } from "./tracks-around.svelte";
 const TICK_MS = 250;
 /** Trails are filled with as much of the past when an incident is opened (s). */
 const PAST_S = 1800;
-/** Centimetres are less than a trail's line is wide. */
-const AS_TRAILS = { view: "live", step: 2, decimals: 2 } as const;
+/** Centimetres are less than a trail's line is wide, and radios that lie there have none. */
+const AS_TRAILS = { view: "live" as const, step: 2, decimals: 2, role: MOVING };
 const COMPARED_DECIMALS = 3;
 
 export class Screen implements DoorOwner, ReplayOwner {

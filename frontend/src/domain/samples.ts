@@ -91,6 +91,7 @@ export function anIncident(over: Partial<Incident> = {}): Incident {
     closed: null,
     last_seq: 0,
     first_t: null,
+    earliest_t: null,
     last_t: null,
     stretches: [],
     ...over,

@@ -45,6 +45,9 @@ export function whileUnheard(limits: StalenessLimits): StalenessLimits {
   return { ...limits, staleAfterS: -1 };
 }
 
+/** The roles of what moves. */
+export const MOVING: Role[] = ["responder", "uav"];
+
 export function isMoving(role: Role): boolean {
   return role === "responder" || role === "uav";
 }

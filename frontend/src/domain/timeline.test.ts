@@ -46,8 +46,10 @@ describe("the bar", () => {
 
   test("of a live incident does not begin decades before it because the clock of one unit was never set", () => {
     const one = [track("unset", 5), track("ff1", NOON + 7)];
-    expect(extentOf(anIncident({ first_t: 5 }), one, 5, NOON + 60).from).toBe(NOON + 7);
-    expect(extentOf(anIncident({ first_t: 5 }), [], 5, NOON + 60).from).toBe(NOON);
+    const live = anIncident({ first_t: 5, earliest_t: NOON - 100 });
+    expect(extentOf(live, one, 5, NOON + 60).from).toBe(NOON + 7);
+    expect(extentOf(live, [track("held back", NOON - 100)], 5, NOON + 60).from).toBe(NOON - 100);
+    expect(extentOf(live, [], 5, NOON + 60).from).toBe(NOON);
     expect(extentOf(anIncident({ first_t: 5, clock: "recorded" }), [], UNSEEN, NOON + 60).from).toBe(5);
   });
 

@@ -26,9 +26,6 @@ export function within(extent: Extent, t: number): number {
   return Math.min(extent.to, Math.max(extent.from, t));
 }
 
-/** What a gateway held back is told of no earlier; what is earlier has a wrong clock, and says nothing of when (s). */
-const HELD_BACK_S = 6 * 3600;
-
 /** What the bar spans: from the first thing known to now; never less than a second. */
 export function extentOf(
   incident: Incident | null,
@@ -36,7 +33,7 @@ export function extentOf(
   earliestT: number,
   newestT: number,
 ): Extent {
-  const sinceT = incident?.clock === "live" ? incident.created - HELD_BACK_S : Number.NEGATIVE_INFINITY;
+  const sinceT = incident?.earliest_t ?? Number.NEGATIVE_INFINITY;
   const known = [incident?.first_t, earliestT, ...tracks.map(({ points }) => points[0]?.[0])];
   let from = Math.min(...known.filter((t) => t != null && t >= sinceT).map(Number));
   if (!Number.isFinite(from)) from = incident?.clock === "live" ? incident.created : newestT;

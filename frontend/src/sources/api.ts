@@ -1,6 +1,6 @@
 /** Requests to the server, with their answers as values. */
 import createClient from "openapi-fetch";
-import type { Advice, Evidence, Frame, FrameAlarm, Incident, Track } from "../domain/types";
+import type { Advice, Evidence, Frame, FrameAlarm, Incident, Role, Track } from "../domain/types";
 import type { components, paths } from "./schema";
 
 const client = createClient<paths>({ baseUrl: window.location.origin });
@@ -71,11 +71,18 @@ export async function incident(id: string): Promise<Incident> {
 
 /**
  * Where everybody was, a point every `step` seconds between `from` and `to` (Unix s), with so many decimals of its
- * numbers: `live` as the estimate stood then, `smoothed` with everything known now.
+ * numbers, and only those of some roles: `live` as the estimate stood then, `smoothed` with everything known now.
  */
 export async function tracks(
   id: string,
-  query: { view: "live" | "smoothed"; from?: number; to?: number; step?: number; decimals: number },
+  query: {
+    view: "live" | "smoothed";
+    from?: number;
+    to?: number;
+    step?: number;
+    decimals: number;
+    role?: Role[];
+  },
   signal?: AbortSignal,
 ): Promise<Track[]> {
   const params = { path: { incident: id }, query };

@@ -245,7 +245,7 @@ export interface paths {
         put?: never;
         /**
          * Post a batch of readings
-         * @description Answered when the batch is durable on disk. `(gateway, batch)` is the idempotency key, for ever: a batch sent again gets its first answer with `duplicate: true`, even if the incident has been closed since, and changes nothing. A reading that breaks the schema, or is more than 60 s ahead of `sent` (or, where the incident's clock is live, of the server's clock), does not refuse its batch: it is listed in `rejected`, kept in the log as it came, and not given to the estimator. An alarm from a clock ahead is taken, and counts as of when it came. A batch may have no readings. Where an object names a field twice, the last one counts. The body may be gzip (`Content-Encoding: gzip`), in one member.
+         * @description Answered when the batch is durable on disk. `(gateway, batch)` is the idempotency key, for ever: a batch sent again gets its first answer with `duplicate: true`, even if the incident has been closed since, and changes nothing. A reading that breaks the schema, or is more than 60 s ahead of `sent` (or, where the incident's clock is live, of the server's clock), does not refuse its batch: it is listed in `rejected`, kept in the log as it came, and not given to the estimator. An alarm from a clock ahead is taken, and counts as of when it came. A batch may have no readings. Where an object names a field twice, the last one counts. The body may be gzip (`Content-Encoding: gzip`), in one member or several.
          */
         post: operations["post_telemetry"];
         delete?: never;
@@ -309,7 +309,7 @@ export interface components {
             last_seq: number;
             /**
              * First T
-             * @description first second that can be shown, Unix seconds; null if none. On a live clock none that is more than 6 h before the first batch came, if there is another: a clock was wrong
+             * @description first second that can be shown, Unix seconds; null if none. On a live clock none before `earliest_t`, if there is another
              */
             first_t: number | null;
             /**
@@ -317,6 +317,11 @@ export interface components {
              * @description last second that can be shown, Unix seconds; null if none
              */
             last_t: number | null;
+            /**
+             * Earliest T
+             * @description on a live clock: what is told of earlier than this, 6 h before the first batch came, Unix seconds, comes from a clock that is wrong; null on a recorded one
+             */
+            earliest_t: number | null;
             /**
              * Stretches
              * @description what it was set to, and from when on: the first as it was opened, the last holds now
@@ -458,8 +463,8 @@ export interface components {
          * @description What this process needs for its work.
          *
          *     Attributes:
-         *         log: the database answers, has not refused what was last written, and its disk has room, where it is a
-         *             file here.
+         *         log: the database answers, its writer is at work and was not refused what it wrote last, and its disk
+         *             has room, where it is a file here.
          *         worker: an estimator worker is connected and ready to compute; it takes seconds to begin. Without one
          *             telemetry is still taken, and dots go stale.
          */
@@ -1891,6 +1896,8 @@ export interface operations {
             query?: {
                 /** @description only this one; all, without it */
                 node?: string | null;
+                /** @description only nodes that have one of these roles now; all, without it */
+                role?: ("base" | "anchor" | "beacon" | "breadcrumb" | "responder" | "uav")[] | null;
                 /** @description first second, Unix seconds; `first_t` without it */
                 from?: number | null;
                 /** @description last second, Unix seconds */

@@ -25,6 +25,7 @@ def incident() -> Callable[..., Incident]:
             "closed": None,
             "last_seq": 0,
             "first_t": None,
+            "earliest_t": None,
             "last_t": None,
         }
         known |= fields

@@ -93,6 +93,7 @@ def test_a_wrong_clock_does_not_begin_a_live_incident(
         )
     SqlDerivedWriter(engine).save(incident, 3, [frame(second) for second in seconds], None)
     assert store.get(incident).first_t == first_t
+    assert store.get(incident).earliest_t == (100_000 - 6 * 3600 if clock == "live" else None)
     assert store.get(incident).last_t == seconds[-1]
 
 
