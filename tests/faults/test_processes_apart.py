@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -23,13 +24,15 @@ FULL = [
 
 
 @contextlib.contextmanager
-def worker(database: str, link: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A worker by itself."""
+def worker(database: str, link: str, says: Path | None = None) -> Iterator[subprocess.Popen[bytes]]:
+    """A worker by itself; what it reports goes to a file, if one is given."""
     command = [sys.executable, "-m", "backend.cli", "worker", "--database", database, "--link", link]
-    process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    with (says or Path(os.devnull)).open("ab") as reports:
+        process = subprocess.Popen(command, stderr=reports)
     try:
         yield process
     finally:
+        process.send_signal(signal.SIGCONT)
         process.terminate()
         process.wait(20)
 
@@ -76,6 +79,67 @@ def test_a_worker_that_comes_later_finds_the_log_and_one_that_is_replaced_is_not
     assert isinstance(nodes, list)
     walker = next(node for node in nodes if node["node"] == "ff1")
     assert walker["position_m"][0] == pytest.approx(6.0, abs=1.0)
+
+
+def test_while_the_only_worker_hangs_readiness_and_frames_tell_and_it_goes_on_when_it_wakes(
+    apart: tuple[Server, str, str],
+) -> None:
+    server, link, database = apart
+    post = Post(server.url)
+    incident = post.open_incident()
+    with worker(database, link) as hangs:
+        post.frame(incident, min_seq=walk(post, incident, 0))
+        hangs.send_signal(signal.SIGSTOP)
+        newest = walk(post, incident, 1)
+        eventually(lambda: not readiness(server)["worker"], within_s=15.0)
+        notices = post.frame(incident)["notices"]
+        assert isinstance(notices, list)
+        assert "estimator_behind" in [notice["code"] for notice in notices]
+        hangs.send_signal(signal.SIGCONT)
+        post.frame(incident, min_seq=newest)
+        eventually(lambda: readiness(server)["worker"])
+
+
+def test_a_worker_that_hung_gives_way_to_the_one_that_has_taken_its_place_and_can_take_it_again(
+    apart: tuple[Server, str, str], tmp_path: Path
+) -> None:
+    server, link, database = apart
+    post = Post(server.url)
+    incident = post.open_incident()
+    says = tmp_path / "first.stderr"
+    with worker(database, link, says) as first:
+        post.frame(incident, min_seq=walk(post, incident, 0))
+        with worker(database, link) as second:
+            eventually(lambda: workers_of(server) == 2, within_s=60.0)
+            first.send_signal(signal.SIGSTOP)
+            post.frame(incident, min_seq=walk(post, incident, 1))
+            assert epoch_of(database, incident) == 2
+            first.send_signal(signal.SIGCONT)
+            eventually(lambda: "another worker has taken the incident" in says.read_text())
+            eventually(lambda: workers_of(server) == 2)
+            post.frame(incident, min_seq=walk(post, incident, 2))
+            assert epoch_of(database, incident) == 2
+            second.kill()
+            post.frame(incident, min_seq=walk(post, incident, 3))
+        assert epoch_of(database, incident) == 3
+    assert first.returncode == 0
+
+
+def workers_of(server: Server) -> int:
+    """How many workers the web process says are connected."""
+    with Post(server.url).http as http:
+        text = http.get(server.url + "/metrics").text
+    return int(float(text.split("\nfirethread_link_workers ")[1].split()[0]))
+
+
+def epoch_of(database: str, incident: str) -> int:
+    """How often an incident has been taken."""
+    engine = sa.create_engine(database)
+    with engine.connect() as connection:
+        query = sa.text("SELECT epoch FROM leases WHERE incident = :incident")
+        epoch = connection.execute(query, {"incident": incident}).scalar_one()
+    engine.dispose()
+    return int(epoch)
 
 
 def test_a_worker_without_the_shared_word_is_turned_away(
