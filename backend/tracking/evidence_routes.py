@@ -35,7 +35,8 @@ def evidence_router(incidents: IncidentStore, reader: LogReader, smoothing: Smoo
     ) -> Response:
         """Which measurements hold a node's fix where it is, and which were rejected.
 
-        It is what the whole log says now of everything up to `t` (without it: up to the newest epoch). An
+        It is what the whole log says now of everything up to `t` (without it: up to the newest epoch); where
+        that takes longer than anybody waits, what it said when the weighing was begun, for who asks again. An
         entry that came later than `t` but tells of epochs before it counts. Settings and origin are those
         of then.
         """

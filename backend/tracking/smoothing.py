@@ -4,12 +4,11 @@ import asyncio
 import multiprocessing
 import os
 import threading
-from collections import OrderedDict
-from collections.abc import Callable, Coroutine, Hashable
+from collections.abc import Callable, Hashable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
-from typing import Any, Generic, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
 
 from backend.errors import NotFound, TooSlow, Unavailable
 from backend.tracking.aside import (
@@ -23,6 +22,7 @@ from backend.tracking.aside import (
 )
 from backend.tracking.fold import OtherState
 from backend.tracking.heads import Head
+from backend.tracking.kept import Kept
 from estimator.estimate import Relative
 from estimator.evidence import Advice, Evidence
 from estimator.warm import warm_up
@@ -42,55 +42,6 @@ RELATIVE_WITHIN_S = 30.0
 
 P = ParamSpec("P")
 T = TypeVar("T")
-
-
-class Kept(Generic[T]):
-    """Sums that are done or under way, by what was asked; asking twice for the same one costs once.
-
-    Args:
-        most: as many are kept, those asked for most recently; older ones are given up.
-    """
-
-    def __init__(self, most: int) -> None:
-        self._most = most
-        self._jobs: OrderedDict[Hashable, asyncio.Task[T]] = OrderedDict()
-
-    async def get(
-        self, key: Hashable, begin: Callable[[], Coroutine[Any, Any, T]], within_s: float, doing: str
-    ) -> T:
-        """What a sum gives.
-
-        Args:
-            key: what is asked.
-            begin: begins the sum, where it is neither done nor under way, or has failed.
-            within_s: as long is it waited for (s).
-            doing: what is done, as the beginning of a sentence.
-
-        Raises:
-            TooSlow: it takes long, and goes on; or too much else was asked for since.
-        """
-        job = self._jobs.get(key)
-        if job is None or (job.done() and (job.cancelled() or job.exception() is not None)):
-            job = self._jobs[key] = asyncio.create_task(begin())
-        self._jobs.move_to_end(key)
-        while len(self._jobs) > self._most:
-            _, oldest = self._jobs.popitem(last=False)
-            oldest.cancel()
-        try:
-            return await asyncio.wait_for(asyncio.shield(job), within_s)
-        except TimeoutError:
-            raise TooSlow(
-                f"{doing} takes longer than {within_s:g} s; it goes on: ask again in a minute."
-            ) from None
-        except asyncio.CancelledError:
-            if not job.cancelled():
-                raise  # it is the request that was given up
-            raise TooSlow("Other sums are in the way: ask again in a minute.") from None
-
-    def cancel(self) -> None:
-        """Give up what is under way."""
-        for job in self._jobs.values():
-            job.cancel()
 
 
 class Smoothing:
@@ -131,8 +82,9 @@ class Smoothing:
             TooSlow: it takes long; the work goes on, and asking again later finds it done.
             Unavailable: the process that does it ended.
         """
-        key = (head.incident, head.last_seq, head.tracker, head.settings)
-        return await self._tracks.get(key, lambda: self._smooth(head), SMOOTH_WITHIN_S, "Smoothing")
+        return await self._tracks.get(
+            _told(head), head.last_seq, lambda: self._smooth(head), SMOOTH_WITHIN_S, "Smoothing"
+        )
 
     async def _smooth(self, head: Head) -> Smoothed:
         return smoothed_of(await self._aside(smooth_log, self._url, head))
@@ -154,9 +106,9 @@ class Smoothing:
             Unavailable: the process that does it ended.
         """
         _refuse_where_nothing_came(head)
-        key = (head.incident, head.last_seq, head.tracker, head.settings, node, t)
         return await self._evidence.get(
-            key,
+            (_told(head), node, t),
+            head.last_seq,
             lambda: self._aside(evidence_of_log, self._url, head, node, t),
             EXPLAIN_WITHIN_S,
             "Weighing the measurements",
@@ -175,9 +127,9 @@ class Smoothing:
             Unavailable: the process that does it ended.
         """
         _refuse_where_nothing_came(head)
-        key = (head.incident, head.last_seq, head.tracker, head.settings, node)
         return await self._advice.get(
-            key,
+            (_told(head), node),
+            head.last_seq,
             lambda: self._aside(advice_of_log, self._url, head, node),
             EXPLAIN_WITHIN_S,
             "Weighing what could be done",
@@ -204,7 +156,8 @@ class Smoothing:
             ) from None
         except OtherState:
             return await self._relative.get(
-                (head, a, b),
+                (_told(head), a, b),
+                head.last_seq,
                 lambda: self._aside(relative_of_log, self._url, head, a, b),
                 RELATIVE_WITHIN_S,
                 "Folding the log anew",
@@ -236,6 +189,11 @@ class Smoothing:
             if self._pool is pool:
                 self._pool = None
             raise Unavailable("The process that does these sums has ended: ask again.") from None
+
+
+def _told(head: Head) -> Hashable:
+    """The incident, and with what its sums are done."""
+    return head.incident, head.tracker, head.settings, head.live
 
 
 def _refuse_where_nothing_came(head: Head) -> None:

@@ -1,4 +1,4 @@
-"""Sums that are kept by what was asked."""
+"""Sums over whole logs are done in a process beside the web process."""
 
 import asyncio
 import multiprocessing
@@ -6,64 +6,12 @@ import multiprocessing
 import msgspec
 import pytest
 
-from backend.errors import NotFound, TooSlow
+from backend.errors import NotFound
 from backend.tracking import smoothing
 from backend.tracking.aside import smooth_log
 from backend.tracking.heads import Head
-from backend.tracking.smoothing import Kept, Smoothing
+from backend.tracking.smoothing import Smoothing
 from estimator.trackers.base import TrackerSettings
-
-
-class Counted:
-    """A sum that counts how often it was begun, and ends when it is told to."""
-
-    def __init__(self, *, done: bool = True, fails: bool = False) -> None:
-        self.begun = 0
-        self.fails = fails
-        self.end = asyncio.Event()
-        if done:
-            self.end.set()
-
-    async def __call__(self) -> int:
-        self.begun += 1
-        await self.end.wait()
-        if self.fails:
-            raise ValueError("no")
-        return self.begun
-
-
-def test_asking_twice_begins_once() -> None:
-    async def ask() -> None:
-        kept, slow = Kept[int](2), Counted(done=False)
-        asked = [asyncio.create_task(kept.get("a", slow, 5.0, "This")) for _ in range(3)]
-        await asyncio.sleep(0)
-        slow.end.set()
-        assert await asyncio.gather(*asked) == [1, 1, 1]
-        assert await kept.get("a", slow, 5.0, "This") == 1
-
-    asyncio.run(ask())
-
-
-def test_what_failed_is_begun_again() -> None:
-    async def ask() -> None:
-        kept, failing = Kept[int](2), Counted(fails=True)
-        for _ in range(2):
-            with pytest.raises(ValueError, match="no"):
-                await kept.get("a", failing, 5.0, "This")
-        assert failing.begun == 2
-
-    asyncio.run(ask())
-
-
-def test_what_takes_long_goes_on_and_is_found_done() -> None:
-    async def ask() -> None:
-        kept, slow = Kept[int](2), Counted(done=False)
-        with pytest.raises(TooSlow, match=r"This takes longer than 0\.01 s; it goes on"):
-            await kept.get("a", slow, 0.01, "This")
-        slow.end.set()
-        assert await kept.get("a", slow, 5.0, "This") == 1
-
-    asyncio.run(ask())
 
 
 def test_of_an_incident_without_readings_nobody_waits_for_the_process() -> None:
@@ -80,45 +28,6 @@ def test_of_an_incident_without_readings_nobody_waits_for_the_process() -> None:
         ):
             with pytest.raises(NotFound, match="No reading of this incident"):
                 await asked
-
-    asyncio.run(ask())
-
-
-def test_who_waits_for_what_was_given_up_is_told_so() -> None:
-    async def ask() -> None:
-        kept, slow = Kept[int](1), Counted(done=False)
-        waiting = asyncio.create_task(kept.get("a", slow, 5.0, "This"))
-        await asyncio.sleep(0)
-        assert await kept.get("b", Counted(), 5.0, "That") == 1
-        with pytest.raises(TooSlow, match="in the way"):
-            await waiting
-
-    asyncio.run(ask())
-
-
-def test_a_request_that_is_given_up_ends_without_ending_the_sum() -> None:
-    async def ask() -> None:
-        kept, slow = Kept[int](1), Counted(done=False)
-        waiting = asyncio.create_task(kept.get("a", slow, 5.0, "This"))
-        await asyncio.sleep(0)
-        waiting.cancel()
-        with pytest.raises(asyncio.CancelledError):
-            await waiting
-        slow.end.set()
-        assert await kept.get("a", slow, 5.0, "This") == 1
-        assert slow.begun == 1
-
-    asyncio.run(ask())
-
-
-def test_the_sums_that_were_asked_for_longest_ago_are_given_up_first() -> None:
-    async def ask() -> None:
-        kept, sums = Kept[int](2), {name: Counted() for name in "abc"}
-        for name in "abaca":
-            await kept.get(name, sums[name], 5.0, "This")
-        assert {name: counted.begun for name, counted in sums.items()} == {"a": 1, "b": 1, "c": 1}
-        await kept.get("b", sums["b"], 5.0, "This")
-        assert sums["b"].begun == 2
 
     asyncio.run(ask())
 
