@@ -139,3 +139,18 @@ def test_who_steps_back_from_the_end_of_a_replay_sees_it_stand_as_its_button_say
     stands = commander.clock
     time.sleep(2.5)  # in which a replay that goes on would be seen to
     assert (commander.clock, commander.play_button) == (stands, "Play")
+
+
+def test_in_a_recorded_incident_what_was_named_under_way_is_marked_where_it_stood_then(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    t = 1_763_712_345.0
+    incident = post.open_incident()
+    heard(post, incident, base(t), responder(t, "walker", "A", [2, 2, 0]))
+    heard(post, incident, step(t + 4, "walker", [1, 0, 0]))
+    assert post.http.patch(f"/incidents/{incident}", json={"levels": LEVELS}).status_code == 200
+    heard(post, incident, step(t + 8, "walker", [1, 0, 0]))
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.was_set == ["Set: storeys"])
+    commander.scrubs_to(t + 4)
+    eventually(lambda: commander.event == "Set: storeys")

@@ -4,13 +4,15 @@ import { raisedOf } from "../domain/past-alarms";
 import { setMarks } from "../domain/stretches";
 import { type Mark, withAlarmMarks, withDropMarks, withSetMarks } from "../domain/timeline";
 import type { DeltaMessage, FrameAlarm, FrameMessage, Incident } from "../domain/types";
-import { loggedPages } from "../sources/log";
+import { loggedPages, newestToldBy } from "../sources/log";
 
 export class Marks {
   list = $state.raw<readonly Mark[]>([]);
   private reading = new AbortController();
   /** Breadcrumbs that have been in the picture. */
   private readonly lying = new Set<string>();
+  /** The newest epoch told up to the log entries after which something was set (Unix s). */
+  private readonly whenTold = new Map<number, number>();
 
   /** @param name gives the spoken name of a node */
   constructor(private readonly name: (node: string) => string) {}
@@ -18,6 +20,7 @@ export class Marks {
   clear(): void {
     this.reading.abort();
     this.lying.clear();
+    this.whenTold.clear();
     this.list = [];
   }
 
@@ -32,17 +35,26 @@ export class Marks {
 
   /** The incident is as it was told of now. */
   told(incident: Incident): void {
-    this.list = withSetMarks(this.list, setMarks(incident));
+    this.list = withSetMarks(this.list, setMarks(incident, this.whenTold));
   }
 
   /** Reads the past out of the log of an incident; what cannot be read has no marks. */
-  async readPast({ id, clock }: Incident, lastSeq: number): Promise<void> {
+  async readPast(incident: Incident, lastSeq: number): Promise<void> {
+    const { id, clock, stretches } = incident;
     this.reading.abort();
     const reading = new AbortController();
     this.reading = reading;
     const alarms: LoggedAlarm[] = [];
     const drops: LoggedDrop[] = [];
     try {
+      if (clock === "recorded") {
+        for (const { after_seq } of stretches.slice(1)) {
+          const t = await newestToldBy(id, after_seq, reading.signal);
+          if (reading.signal.aborted) return;
+          if (t !== undefined) this.whenTold.set(after_seq, t);
+        }
+        this.told(incident);
+      }
       for await (const page of loggedPages(id, lastSeq, clock, reading.signal)) {
         if (reading.signal.aborted) return;
         alarms.push(...page.flatMap((line) => line.alarms));

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { dropsOf, loggedIn, newBreadcrumbs } from "./logged";
+import { dropsOf, loggedIn, newBreadcrumbs, newestIn } from "./logged";
 import { aNode, NOON } from "./samples";
 
 const line = (readings: object[], rejected: object[] = []) =>
@@ -62,4 +62,10 @@ test("an alarm from a clock that is ahead is of when it came, and no other is", 
     loggedIn(line([alarm]), clock).alarms.map(({ t }) => t - NOON);
   expect([timesOf(call, "live"), timesOf({ ...call, t: NOON - 5 }, "live")]).toEqual([[0], [-5]]);
   expect(timesOf(call, "recorded")).toEqual([3600]);
+});
+
+test("the newest epoch of a line is that of its readings, without those set aside", () => {
+  const readings = [{ t: 5 }, { t: 900 }, { t: 7 }];
+  expect(newestIn(JSON.stringify({ readings, rejected: [{ index: 1 }] }))).toBe(7);
+  expect(newestIn(JSON.stringify({ readings: [] }))).toBe(Number.NEGATIVE_INFINITY);
 });

@@ -50,6 +50,15 @@ export function loggedIn(line: string, clock: Incident["clock"]): Logged {
   };
 }
 
+/** The newest epoch that a line tells of, readings that were set aside excepted (Unix s); -∞ where there is none. */
+export function newestIn(line: string): number {
+  const { rejected, readings } = JSON.parse(line) as LogLine;
+  const aside = new Set(rejected?.map(({ index }) => index));
+  return Math.max(
+    ...readings.map(({ t }, index) => (aside.has(index) ? Number.NEGATIVE_INFINITY : Number(t))),
+  );
+}
+
 /** When each breadcrumb was dropped; of one that nobody is said to have dropped, when it was first introduced. */
 export function dropsOf(said: readonly LoggedDrop[]): { node: string; t: number }[] {
   const dropped = new Set(said.flatMap((one) => (one.dropped ? [one.node] : [])));

@@ -44,10 +44,15 @@ describe("what is shown of the past", () => {
 });
 
 test("the timeline says when something was set, and what", () => {
-  expect(setMarks(anIncident({ ...now, clock: "live" }))).toEqual([
+  expect(setMarks(anIncident({ ...now, clock: "live" }), new Map())).toEqual([
     { t: NOON + 60, kind: "set", text: "Set: storeys" },
     { t: NOON + 90, kind: "set", text: "Set: tracker paper-a, lag 5" },
   ]);
-  expect(setMarks(anIncident({ stretches: [opened] }))).toEqual([]);
-  expect(setMarks(anIncident({ ...now, clock: "recorded" }))).toEqual([]);
+  expect(setMarks(anIncident({ stretches: [opened] }), new Map())).toEqual([]);
+});
+
+test("where readings are the clock, it was set at the newest epoch that had been told by then", () => {
+  const recorded = anIncident({ ...now, clock: "recorded" });
+  expect(setMarks(recorded, new Map([[7, 1003]]))).toEqual([{ t: 1003, kind: "set", text: "Set: storeys" }]);
+  expect(setMarks(recorded, new Map())).toEqual([]);
 });

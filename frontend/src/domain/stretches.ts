@@ -22,13 +22,22 @@ export function toldAt(incident: Incident, t: number, seq: number): Incident {
   return { ...incident, origin: told.origin, levels: told.levels, settings: told.settings };
 }
 
-/** Marks of what was set under way; where readings are the clock, nothing tells of which moment of it that was. */
-export function setMarks({ clock, stretches }: Incident): readonly Mark[] {
-  if (clock !== "live") return [];
+/**
+ * Marks of what was set under way.
+ *
+ * @param incident whose
+ * @param whenTold the newest epoch (Unix s) that was told up to a log entry, as far as it is known: where readings
+ *   are the clock, that was now when something was set
+ */
+export function setMarks(
+  { clock, stretches }: Incident,
+  whenTold: ReadonlyMap<number, number>,
+): readonly Mark[] {
   return stretches.flatMap((stretch, index): Mark[] => {
     const before = stretches[index - 1];
-    if (before === undefined) return [];
-    return [{ t: stretch.since, kind: "set", text: `Set: ${changed(before, stretch).join(", ")}` }];
+    const t = clock === "live" ? stretch.since : whenTold.get(stretch.after_seq);
+    if (before === undefined || t === undefined) return [];
+    return [{ t, kind: "set", text: `Set: ${changed(before, stretch).join(", ")}` }];
   });
 }
 

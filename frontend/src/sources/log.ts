@@ -1,11 +1,13 @@
 /** What the log of an incident says of events, read in the background: its newest part first. */
-import { EVENTS, type Logged, loggedIn } from "../domain/logged";
+import { EVENTS, type Logged, loggedIn, newestIn } from "../domain/logged";
 import type { Incident } from "../domain/types";
 
 /** So many the server looks through at once: about half an hour of two crews, of which few lines come. */
 const ENTRIES_A_PAGE = 4000;
 /** So much is read for one incident (characters). */
 const MOST_CHARACTERS = 8_000_000;
+/** Gateways take turns: the newest epoch told so far stands in one of so many entries. */
+const LOOKED_BACK = 20;
 /** Between two pages the server is left to what is live (ms). */
 const PAUSE_MS = 100;
 
@@ -28,7 +30,7 @@ export async function* loggedPages(
   for (let end = lastSeq; end > 0 && budget > 0 && !signal.aborted; end -= ENTRIES_A_PAGE) {
     const after = Math.max(0, end - ENTRIES_A_PAGE);
     const page: Logged[] = [];
-    for await (const line of lines(id, after, end - after, signal)) {
+    for await (const line of lines(id, after, end - after, EVENTS, signal)) {
       budget -= line.length;
       page.push(loggedIn(line, clock));
       if (budget <= 0) return;
@@ -38,10 +40,29 @@ export async function* loggedPages(
   }
 }
 
+/** The newest epoch (Unix s) that an incident's log tells of up to entry `seq`; undefined where it tells of none. */
+export async function newestToldBy(
+  id: string,
+  seq: number,
+  signal: AbortSignal,
+): Promise<number | undefined> {
+  const after = Math.max(0, seq - LOOKED_BACK);
+  let newest = Number.NEGATIVE_INFINITY;
+  for await (const line of lines(id, after, seq - after, [], signal))
+    newest = Math.max(newest, newestIn(line));
+  return Number.isFinite(newest) ? newest : undefined;
+}
+
 /** The lines as they come; who stops reading stops the transfer. */
-async function* lines(id: string, after: number, limit: number, signal: AbortSignal): AsyncGenerator<string> {
+async function* lines(
+  id: string,
+  after: number,
+  limit: number,
+  kinds: readonly string[],
+  signal: AbortSignal,
+): AsyncGenerator<string> {
   const query = new URLSearchParams({ after: String(after), limit: String(limit) });
-  for (const kind of EVENTS) query.append("kind", kind);
+  for (const kind of kinds) query.append("kind", kind);
   const answer = await fetch(`/api/v1/incidents/${encodeURIComponent(id)}/log?${query}`, { signal });
   const reader = answer.ok ? answer.body?.pipeThrough(new TextDecoderStream()).getReader() : undefined;
   if (reader === undefined) return;
