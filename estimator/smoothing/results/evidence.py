@@ -80,10 +80,11 @@ def explain(
     doubt = doubt_m2(otherwise(layout, solved.x, modes).get(name, ()), solved.x[start : start + 2])
     across = told[:, :2]
     total = float(np.trace(covariance[:2, :2]))
-    doubt[2, 2] = max(doubt[2, 2], node.doubt_up_m2 - float(covariance[2, 2]))
     doubt += swung(told[:, 3 : 3 + len(headings)], headings, start)
     told_scales = told[:, 3 + len(headings) :]
     doubt += doubted(judged, solved.x, told_scales, suspected(problem, solved), start)
+    # Last, as for a track: it is the least that a height is unsure by, whatever else there is to doubt.
+    doubt[2, 2] = max(doubt[2, 2], node.doubt_up_m2 - float(covariance[2, 2]))
     rows = problem.rows
     flat = _flat(layout, rows)
     carried = np.einsum(
