@@ -120,6 +120,11 @@ def inverse(cholesky: Cholesky) -> Array:
     return unscaled(lower.T, cholesky.scale)
 
 
+def log_determinant(cholesky: Cholesky) -> float:
+    """The logarithm of |A|."""
+    return 2.0 * float(np.log(np.diagonal(cholesky.factor) * cholesky.scale).sum())
+
+
 @njit(cache=True, nogil=True)
 def unscaled(upper: Array, scale: Array) -> Array:
     """Both triangles of D⁻¹ A D⁻¹ for the upper one of A (n × n) and the diagonal of D (n)."""

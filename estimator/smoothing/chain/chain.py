@@ -14,7 +14,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from estimator.graph.dense import Array, factorise, inverse, mended, solve
+from estimator.graph.dense import Array, factorise, inverse, log_determinant, mended, solve
 from estimator.graph.scatter import add_part
 from estimator.smoothing.chain.at_once import at_once
 from estimator.smoothing.chain.groups import Group
@@ -201,6 +201,14 @@ class Chain:
             pulled += flat.T @ strand.gradient.ravel()
         across = solve(self._cholesky, rest)
         return Explained(found + rest.T @ across, pulled + across.T @ gradient)
+
+    def log_determinants(self) -> tuple[Array, float]:
+        """After `reduce` or `solve`: what each walk adds to log |L|, and what the border does."""
+        *moving, _ = self.strands  # of the last one there is only the border
+        found = np.zeros(sum(len(strand.group.walks) for strand in moving))
+        for strand in moving:
+            found[strand.group.walks] = strand.log_determinants()
+        return found, log_determinant(self._cholesky)
 
     def covariances(self) -> tuple[Array, Array, Array]:
         """After `reduce` or `solve`: covariances of the walks and of the border.

@@ -133,6 +133,14 @@ class Strand:
         self.eased += take_off(self._done, until, self.wide, self.corner, self.corner_gradient)
         self._done = until
 
+    def log_determinants(self) -> Array:
+        """After its elimination: what each of its walks adds to log |L|, blocks.
+
+        Of those that readings couple each is told after the ones before it.
+        """
+        roots = np.log(np.diagonal(self.diagonal, axis1=1, axis2=2)).sum(axis=0)
+        return np.asarray(-2.0 * roots.reshape(self.link.shape[1:3]).sum(axis=1))
+
     def substitute(self, fixed: Array) -> Array:
         """Steps of the keyframes, k × n, for a step of its part of the border, s."""
         steps = np.zeros(self.gradient.shape)

@@ -4,7 +4,7 @@ Where all lie in one plane no distance tells up from down, so no step of a solut
 much too long distances are. So a solution with heights is sought from a little above.
 """
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 
 import numpy as np
 from msgspec.structs import replace
@@ -13,15 +13,16 @@ from estimator.fusion import physics
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.steps import CLIMB_M2_PER_M
 from estimator.graph.dense import Array
+from estimator.smoothing.images.heights import UP, over_all
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
 
-UP = 2
-"""Which of a state's numbers is its height."""
 OFF_PLANE_M = 0.3
 """Far enough for distances to lead on, too little for them to tell."""
 CLEAR = 10.0
-"""In log likelihood: heights that nobody measures fit some noise as well. A kick is found by as much."""
+"""Log odds from which on somebody has climbed. A kick is found by as much."""
+SOON, HOPELESS = 3, 10.0
+"""Steps after which heights are given up whose readings are this much less likely with each of them."""
 HINT = 5.0
 """Readings that cost so much more than they did hint at heights: it was 18 to 22 where somebody had climbed.
 On the level they may as well, by chance: then it is asked in vain."""
@@ -65,17 +66,49 @@ def climbed(
     x = solved.x.copy()
     for i in level:
         layout.states(x, i)[:, UP] += OFF_PLANE_M
-    other = state.copy()
-    _let_climb(other, [layout.walks[i].number for i in level], layout.since_t)
-    trial = build(other)
-    found = trial.solve(x, resting=resting)
+    trial = _trial(problem, solved, level, build)
+    found = trial.solve(x, iterations=SOON, resting=resting)
     state.level_cost = solved.cost / max(len(problem.rows.slab), 1)
+    flat = problem.assemble(solved.x, solved.linear, solved.weighted, solved.motions)
+    before = over_all(problem, solved, flat)
+    if not found.rests:
+        after = over_all(trial, found, found.chain)
+        if (after.each[level] > before.each[level] + HOPELESS).all():
+            return problem, solved
+        found = trial.solve(found.x, resting=resting)
     rose = [i for i in level if np.ptp(_heights(problem, found.x, i)) > CLIMBED_M]
     if not rose or found.cost > solved.cost - CLEAR:
         return problem, solved
-    _let_climb(state, [layout.walks[i].number for i in rose], layout.since_t)
+    after = over_all(trial, found, found.chain)
+    likelier = [i for i in rose if after.each[i] < before.each[i]]
+    if likelier and likelier != level:
+        # Heights of others, which fit noise, speak neither for nor against his.
+        x = found.x.copy()
+        for i in level:
+            if i not in likelier:
+                layout.states(x, i)[:, UP] = layout.states(solved.x, i)[:, UP]
+        trial = _trial(problem, solved, likelier, build)
+        found = trial.solve(x, resting=resting)
+        after = over_all(trial, found, found.chain)
+    if not likelier or after.all > before.all - CLEAR:
+        return problem, solved
+    _let_climb(state, [layout.walks[i].number for i in likelier], layout.since_t)
     anew = build(state)
     return anew, anew.solve(found.x, resting=resting)
+
+
+def _trial(
+    problem: Problem, solved: Solved, walks: Sequence[int], build: Callable[[FusionState], Problem]
+) -> Problem:
+    """The window with some walks, by index, let climb, and floors between radios where a solution has them.
+
+    With others it could not be compared with that (decision 0019).
+    """
+    other, layout = problem.layout.state.copy(), problem.layout
+    _let_climb(other, [layout.walks[i].number for i in walks], layout.since_t)
+    trial = build(other)
+    trial.rows.floors = trial.rows.through(solved.x)
+    return trial
 
 
 def _heights(problem: Problem, x: Array, index: int) -> Array:

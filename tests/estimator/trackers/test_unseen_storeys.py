@@ -60,6 +60,24 @@ def climbs(seed: int) -> tuple[list[AnyReading], Array]:
     return readings, way
 
 
+def stays(seed: int, way: Array) -> list[AnyReading]:
+    """What is posted of another one, who goes round the ground floor as long as somebody else's way takes."""
+    chance, lap = np.random.default_rng((seed, 2)), way[: len(way) // 2]
+    readings: list[AnyReading] = [
+        Node(t=0.0, node="ff2", role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.2)
+    ]
+    for second in range(1, len(way)):
+        was, now = lap[(second - 1) % (len(lap) - 1)], lap[second % (len(lap) - 1)]
+        e, n = (now[:2] - was[:2] + chance.normal(0.0, 0.03, 2)).tolist()
+        readings.append(Displacement(t=second, from_t=second - 1.0, node="ff2", delta_m=(e, n, 0.0)))
+        for name, at in [("base", way[0]), *((f"b{t}", way[t]) for t in DROPS_S if t < second)]:
+            off_m = float(np.linalg.norm(now - at))
+            if off_m < REACH_M:
+                range_m = abs(off_m + float(chance.normal(0.0, 0.15)))
+                readings.append(Range(t=second, a="ff2", b=name, range_m=range_m, technology="uwb"))
+    return readings
+
+
 def off(position_m: Vector3, covariance_m2: Covariance6, at: Array) -> tuple[float, float]:
     """How far off he is shown in the plane (m), and that squared by what is said."""
     ee, en, _, nn, _, _ = covariance_m2
@@ -102,6 +120,15 @@ def test_his_storey_is_unsure_whichever_of_two_heights_ranges_have_led_to() -> N
     assert shown.covariance_m2 is not None
     assert abs(shown.position_m[2] - way[-1, 2]) < 2.45 * np.sqrt(shown.covariance_m2[5])
     assert np.sqrt(shown.covariance_m2[5]) > STOREY_M / 2.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_who_keeps_to_the_ground_is_left_there_when_another_one_climbs(seed: int) -> None:
+    readings, way = climbs(seed)
+    tracks = BatchSmoother().smooth([*readings, *stays(seed, way)])
+    rose_m = {name: np.ptp([p.position_m[2] for p in tracks[name]]) for name in ("ff1", "ff2")}
+    assert rose_m["ff1"] > 0.5 * STOREY_M
+    assert rose_m["ff2"] < 0.5
 
 
 def test_on_one_floor_nobody_is_led_off_it_by_what_ranges_scatter() -> None:
