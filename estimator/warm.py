@@ -33,6 +33,8 @@ from estimator.inertial.boot import Boot
 from estimator.inertial.clock import Clock, hears
 from estimator.inertial.loose import tell
 from estimator.inertial.repeating import sift, unwatched
+from estimator.inertial.seeking import face_on, standstill
+from estimator.inertial.seeking import place as place_boot
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
@@ -75,6 +77,9 @@ def warm_up() -> None:
     taken = advance(boot, rests, np.zeros((60, 3)), 0.01)
     advance(boot, rests[taken:], np.zeros((60, 3))[taken:], 0.01)
     tell(boot, 0.5)
+    face_on(boot)
+    again, felt = boot.anew(), np.hstack([rests, np.zeros((60, 3))])
+    place_boot(again, felt, standstill(again, felt, 0.01), 0.01)
     hears(Clock.new(100.0)._replace(counted=1), 1.0, 100.0, overlaps=False)
     sift(unwatched(), np.zeros((0, 6)), np.zeros((2, 6)), 0, 0.01)
     predict_bearing(place, place, one)

@@ -88,7 +88,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         displacements = [r for r in displacements if r.t > back.get(r.node, math.inf)]
         _fold(state, early, [r for r in holds if r.t <= back_t], late_t, {name})
         holds = [*state.waiting, *(r for r in holds if r.t > back_t)]
-        drift_units(state, {name: back_t})
+        drift_units(state, {name: back_t}, onward=True)
         state.suspected = state.suspected or was_silent(state.nodes[name])
     _fold(state, displacements, holds, late_t, gone_out)
     for gone in retired:

@@ -133,6 +133,11 @@ class Boot(NamedTuple):
         return bool(self.told[0] < 0.0)
 
     @property
+    def sought(self) -> bool:
+        """Whether it is to be levelled again, and nothing is gathered for that yet."""
+        return bool(self.told[0] == 0.0 and self.gyros[BIAS_RADPS] > 0.0)
+
+    @property
     def heading_rad(self) -> float:
         """What its x axis faced when it last stood, seen from above (rad)."""
         return float(self.known[HEADING])

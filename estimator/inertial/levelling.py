@@ -115,7 +115,7 @@ def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
         held.covariance[ATTITUDE + c, ATTITUDE + c] = TILT_SIGMA_RAD[unrested] ** 2
     free.attitude[:] = held.attitude
     free.sensors[:] = held.sensors
-    _doubt(free, mean, unrested, boot.gyros[BIAS_RADPS])
+    doubt_free(free, mean, unrested, boot.gyros[BIAS_RADPS])
     if rests:
         _weigh(free, mean)
     told[0] = -1.0
@@ -136,7 +136,7 @@ def veered_rad2(up: float, tilt_rad: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def _doubt(boot: Strapdown, force: Array, unrested: int, bias_radps: float) -> None:
+def doubt_free(boot: Strapdown, force: Array, unrested: int, bias_radps: float) -> None:
     """What is not known of a navigation whose sensors are states, and which has just been levelled."""
     covariance, attitude = boot.covariance, boot.attitude
     for c in range(3):

@@ -8,27 +8,26 @@ import numpy as np
 from estimator.graph.dense import Array
 from estimator.inertial.advancing import advance
 from estimator.inertial.boot import (
-    ATTITUDE,
     BIAS_RADPS,
     CHANGED,
     FARTHEST_RAD,
     FLAT_M2,
     FOOTHOLD_M,
-    FORCE,
-    GRAVITY_MPS2,
     MOVED_M2,
     RESTED_S,
     TURNED_RAD2,
-    VELOCITY,
     Boot,
 )
+from estimator.inertial.bridging import BRIDGED_S, TURNING_S, bridge, turned_by, turned_unseen
 from estimator.inertial.clock import Clock, hears
+from estimator.inertial.crossing import CROSSED_S, cross, edge_of
 from estimator.inertial.led import Led, displacement_of
-from estimator.inertial.levelling import ALIGN_S, ANYWHERE_RAD
-from estimator.inertial.loose import tell
+from estimator.inertial.levelling import ALIGN_S
 from estimator.inertial.repeating import sift, unwatched
 from estimator.inertial.resting import TOLD_AFTER_S
 from estimator.inertial.samples import Samples
+from estimator.inertial.seeking import SOUGHT_S, face_on, place, standstill
+from estimator.inertial.telling import told
 from estimator.measurements.imu import RATE_MIN_HZ
 
 EACH_S = 0.5
@@ -43,18 +42,6 @@ FOLLOWED, TOLD = 0.2, 0.1
 and so much a piece tells of how much they jitter."""
 UNPACED = 3.0
 """What comes early by no more sigmas of its clock's pace may follow all the same, where nothing repeats."""
-BRIDGED_S = 0.1
-"""So long a gap is bridged: between a swing's samples there is a straight line for a tenth of a second."""
-BRIDGED_OFF, FASTER_OFF = 0.3, 0.5
-"""What a bridge may be off by, as a share of what goes on in it; and so much of its forces nothing holds."""
-STRETCHES = 2.0
-"""Forces are summed up twice: a way is too long by twice as much as its time."""
-FASTEST_MPS = 25.0
-"""A runner's boot swings twice as fast as he runs."""
-TURNS_RADPS, TURNED_RAD, TURNED_RADPS = 3.0, 1.0, 0.1
-"""While samples are missing their bearer may turn on his heel; then he mostly goes on; in the end he may face
-anything, which is 1.8 rad."""
-
 STEEP_RAD = 0.1  # as much as a heading is unsure by that is told without a sigma
 STEEP = "what its x axis faces can hardly be told when it begins: it points up or down, or the boot moves"
 REPORTED = "samples of this time were reported before"
@@ -74,6 +61,8 @@ class Navigation(NamedTuple):
         newest: its newest sample, 6 (m/s², rad/s).
         watch: what has been seen of it, see `repeating.watched`.
         waiting: its newest samples which may turn out to be no readings, k × 6: they are not in `boot`.
+        unplaced: samples since some were missing, m × 6, which wait for a standstill: they are not in `boot`.
+        edge: how it moved before them, if the way over that gap can be told, see `crossing.edge_of`.
         begun: when readings begin of which a part was new, and whose last piece is still to come, n (s).
         missing: so many before these are missing, and `boot` has not been told yet.
         stretched_m: by how much its way may be too long or too short in all, for its clock's pace is not
@@ -90,6 +79,8 @@ class Navigation(NamedTuple):
     newest: Array
     watch: Array
     waiting: Array
+    unplaced: Array
+    edge: Array
     begun: Array
     missing: int
     stretched_m: float
@@ -100,7 +91,7 @@ class Navigation(NamedTuple):
     def new(cls, t: float, heading_rad: float, rate_hz: float) -> Self:
         """That of a boot of which nothing is known at `t` but what its x axis faces, and its rate is told."""
         began = t, t, heading_rad, 0.0, JITTER_S**2
-        empty = np.zeros((0, 6)), np.zeros(0)
+        empty = np.zeros((0, 6)), np.zeros((0, 6)), np.zeros(0), np.zeros(0)
         return cls(
             *began, np.zeros(6), unwatched(), *empty, 0, 0.0, Clock.new(rate_hz), Boot.new(heading_rad)
         )
@@ -160,16 +151,16 @@ def _navigated(known: Navigation, piece: Samples) -> Navigated:
         off_s = 0.0
     counted = known.clock.counted + (len(samples) if overlaps else new)
     known = known._replace(clock=known.clock._replace(counted=counted))
-    samples, known, turned = _joined(known, off_s, step_s, samples)
+    samples, known, turned, found = _joined(known, piece.node, off_s, step_s, samples)
     sifted = sift(known.watch, known.waiting, samples, known.missing, step_s)
-    found, texts, end_t = list[Led](), [sifted.text], known.t + len(samples) * step_s
+    texts, end_t = [sifted.text], known.t + len(samples) * step_s
     known = known._replace(t=known.t - len(known.waiting) * step_s)
     for missing, some in sifted.parts:
         if missing:
-            known, more = _lost(known, step_s * (missing - known.missing), step_s * missing)
+            known, more, _ = _lost(known, None, step_s * (missing - known.missing), step_s * missing)
             turned += more
-        led, known, told = _led(known, piece.node, some, step_s)
-        found, texts = found + led, [told, *texts]
+        led, known, said = _led(known, piece.node, some, step_s)
+        found, texts = found + led, [said, *texts]
     known = known._replace(t=end_t, watch=sifted.watch, waiting=sifted.waiting, missing=sifted.missing)
     return Navigated(known, found, turned, next((text for text in texts if text is not None), None))
 
@@ -182,8 +173,8 @@ def _timed(known: Navigation, piece: Samples, overlaps: bool) -> Navigation:
 
 
 def _joined(
-    known: Navigation, off_s: float, step_s: float, samples: Array
-) -> tuple[Array, Navigation, float]:
+    known: Navigation, node: str, off_s: float, step_s: float, samples: Array
+) -> tuple[Array, Navigation, float, list[Led]]:
     """Samples that begin `off_s` after the last one ended, put behind it.
 
     A gateway's epochs jitter, and no sample is lost; or some are. What is later than its epochs usually are
@@ -191,54 +182,85 @@ def _joined(
 
     Returns:
         The samples with those that bridge what is missing; where they go on; the variance of the heading by
-        what is missing (rad²).
+        what is missing (rad²); what has been led to before that and not been told.
     """
     before, known = known.newest, known._replace(newest=samples[-1].copy())
     if off_s <= max(1.5 * step_s, UNUSUAL * math.sqrt(known.jitter_s2)):
         jitter_s2 = known.jitter_s2 + TOLD * (min(off_s**2, JITTER_MOST_S**2) - known.jitter_s2)
-        return samples, known._replace(t=known.t + FOLLOWED * off_s, jitter_s2=jitter_s2), 0.0
+        return samples, known._replace(t=known.t + FOLLOWED * off_s, jitter_s2=jitter_s2), 0.0, []
     missing = round(off_s / step_s)
-    if off_s > BRIDGED_S or not known.boot.levelled:
-        gone = known.missing + len(known.waiting)
-        known, turned_rad2 = _lost(known, off_s, off_s + gone * step_s)
-        return samples, known._replace(waiting=known.waiting[:0]), turned_rad2
-    shares = (np.arange(1, missing + 1) / (missing + 1.0))[:, None]
-    bridge = before + shares * (samples[0] - before)
-    velocity, rate = known.boot.held.velocity, bridge[:, 3:]
-    lost_m2 = (BRIDGED_OFF * off_s) ** 2 * float(np.dot(velocity, velocity))
-    turned_rad2 = (BRIDGED_OFF * off_s) ** 2 * float((rate**2).sum(axis=1).max())
+    if off_s > BRIDGED_S or not (known.boot.levelled or known.boot.sought):
+        gone, edge = known.missing + len(known.waiting), known.edge[:0]
+        if not gone and off_s <= CROSSED_S and known.boot.levelled:
+            edge = edge_of(known.t, known.boot, before)
+        known, turned_rad2, found = _lost(known, node, off_s, off_s + gone * step_s)
+        if len(edge) and off_s <= TURNING_S:
+            turned_rad2 = turned_by(np.array([before, samples[0]]), off_s)
+        return samples, known._replace(waiting=known.waiting[:0], edge=edge), turned_rad2, found
     boot = known.boot.copy()
-    for each in (boot.held, boot.free):
-        each.covariance[range(ATTITUDE, FORCE), range(ATTITUDE, FORCE)] += turned_rad2
-    ahead = bridge[:, :3] @ boot.free.attitude.T - (0.0, 0.0, GRAVITY_MPS2)
-    faster_m2ps2 = (FASTER_OFF * off_s) ** 2 * float((ahead**2).sum(axis=1).max())
-    boot.free.covariance[range(VELOCITY, ATTITUDE), range(VELOCITY, ATTITUDE)] += faster_m2ps2
+    between, lost_m2, turned_rad2 = bridge(boot, before, samples[0], missing, off_s)
     known = known._replace(
         t=known.t + off_s - missing * step_s, unsure_m2=known.unsure_m2 + lost_m2, boot=boot
     )
-    return np.vstack([bridge, samples]), known, turned_rad2
+    return np.vstack([between, samples]), known, turned_rad2, []
 
 
-def _lost(known: Navigation, ahead_s: float, gone_s: float) -> tuple[Navigation, float]:
+def _lost(
+    known: Navigation, node: str | None, ahead_s: float, gone_s: float
+) -> tuple[Navigation, float, list[Led]]:
     """Go on after missing samples, `ahead_s` from where it is; none have told anything for `gone_s`.
 
+    Nothing is told of the time up to the gap where there is no `node`: a sensor may have been stuck in it.
+
     Returns:
-        Where it goes on; the variance of its heading by what is missing (rad²).
+        Where it goes on; the variance of its heading by what is missing (rad²); the displacement up to there.
     """
-    turned = min(TURNS_RADPS * gone_s, TURNED_RAD + TURNED_RADPS * gone_s, ANYWHERE_RAD)
-    t = known.t + ahead_s
-    known = known._replace(t=t, told_t=t, unsure_m2=0.0, missing=0, boot=known.boot.anew())
-    return known, turned**2
+    t, boot, found, stretched_m = known.t + ahead_s, known.boot.copy(), list[Led](), known.stretched_m
+    if boot.levelled:
+        if node is not None and t - gone_s > known.told_t + JITTER_S:
+            unsure = known.unsure_m2, stretched_m, known.clock.sigma
+            found, stretched_m = told(boot, node, (known.told_t, t - gone_s), *unsure)
+            boot.known[TURNED_RAD2] = 0.0
+        face_on(boot)
+    known = known._replace(t=t, told_t=t, unsure_m2=0.0, missing=0, stretched_m=stretched_m, boot=boot.anew())
+    return known._replace(unplaced=known.unplaced[:0], edge=known.edge[:0]), turned_unseen(gone_s), found
+
+
+def _sought(
+    known: Navigation, node: str, samples: Array, step_s: float
+) -> tuple[list[Led], Navigation, Array] | None:
+    """Place a boot after missing samples, or have it levelled as at first where it does not stand for long.
+
+    Returns:
+        The displacement over the gap, if that can be told; where it goes on; all samples after the gap. None:
+            nothing tells yet where it is.
+    """
+    t, samples = known.t - len(known.unplaced) * step_s, np.vstack([known.unplaced, samples])
+    boot, upto, found = known.boot.copy(), standstill(known.boot, samples, step_s), list[Led]()
+    placed = upto > 0 and place(boot, samples, upto, step_s)
+    if not placed and len(samples) * step_s < SOUGHT_S:
+        return None
+    if placed and len(known.edge):
+        found = [cross(boot, node, known.edge, edge_of(t, boot, samples[0]))]
+    boot = boot if placed else known.boot
+    known = known._replace(t=t, told_t=t, unplaced=samples[:0], edge=known.edge[:0], boot=boot)
+    return found, known, samples
 
 
 def _led(
     known: Navigation, node: str, samples: Array, step_s: float
 ) -> tuple[list[Led], Navigation, str | None]:
     """What samples that go on from `known` lead to."""
+    found: list[Led] = []
+    if known.boot.sought:
+        sought = _sought(known, node, samples, step_s)
+        if sought is None:
+            t = known.t + len(samples) * step_s
+            return [], known._replace(t=t, unplaced=np.vstack([known.unplaced, samples])), None
+        found, known, samples = sought
     boot, told_t, unsure_m2 = known.boot.copy(), known.told_t, known.unsure_m2
     stretched_m, pace_sigma = known.stretched_m, known.clock.sigma
     force, rate = np.ascontiguousarray(samples[:, :3]), np.ascontiguousarray(samples[:, 3:])
-    found: list[Led] = []
     text, done = None, 0
     while done < len(force):
         # Up to where the next displacement is told, by the boot's own clock.
@@ -259,12 +281,9 @@ def _led(
                 boot.gyros[CHANGED] = boot.known[TURNED_RAD2] = 0.0
             told_t = t if boot.levelled else told_t
         elif t >= told_t + EACH_S - 0.5 * step_s:
-            tell(boot, t - told_t)
-            stretch_m = STRETCHES * pace_sigma * float(np.sqrt(np.dot(boot.held.place, boot.held.place)))
-            unsure_m2 += stretch_m * (stretch_m + 2.0 * stretched_m)
-            stretched_m += stretch_m
-            if _sound(boot):
-                found.append(displacement_of(boot, node, told_t, t, unsure_m2))
+            some, stretched_m = told(boot, node, (told_t, t), unsure_m2, stretched_m, pace_sigma)
+            if some:
+                found += some
             else:
                 text = "the boot never stood, or its samples are wrong: it is levelled anew"
                 boot = boot.anew()
@@ -279,9 +298,3 @@ def _led(
     end_t = known.t + len(force) * step_s
     known = known._replace(t=end_t, told_t=told_t, unsure_m2=unsure_m2, stretched_m=stretched_m, boot=boot)
     return found, known, text
-
-
-def _sound(boot: Boot) -> bool:
-    """Whether it moves as a boot may, and knows how well it knows that."""
-    speed = float(np.sqrt(np.dot(boot.held.velocity, boot.held.velocity)))
-    return speed < FASTEST_MPS and all(bool(np.isfinite(array).all()) for array in (*boot.held, *boot.free))

@@ -24,9 +24,11 @@ def record_of(navigation: Navigation) -> NavigationRecord:
 def navigation_of(record: NavigationRecord) -> Navigation:
     """The navigation that a record was made of."""
     (t, told_t, began_rad, unsure_m2, jitter_s2, stretched_m), missing, timed, arrays = record
-    paces, newest, watch, waiting, begun, *known = (unpack(array) for array in arrays)
+    paces, newest, watch, waiting, unplaced, edge, begun, *known = (unpack(array) for array in arrays)
     size = len(Strapdown._fields)
     held, free = Strapdown(*known[:size]), Strapdown(*known[size : 2 * size])
     boot, clock = Boot(held, free, *known[2 * size :]), Clock(*timed, paces)
     plain = t, told_t, began_rad, unsure_m2, jitter_s2
-    return Navigation(*plain, newest, watch, waiting, begun, missing, stretched_m, clock, boot)
+    return Navigation(
+        *plain, newest, watch, waiting, unplaced, edge, begun, missing, stretched_m, clock, boot
+    )

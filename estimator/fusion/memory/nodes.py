@@ -61,6 +61,8 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         turned: its unit's frame may be turned by any angle: every window is tried with several.
         bias_told: what readings say of its unit's gyro bias without its prior.
         otherwise: where it may be instead, by what readings tell as well.
+        whole_t: since when its unit's displacements follow each other without a gap.
+        missed_s: for how long it has told nothing, all gaps since it last told a whole stride.
         walk_factors: learned variances of its unit over the assumed ones: of displacements, of its heading.
     """
 
@@ -100,6 +102,8 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     apart: Apart | None = None
     joined_t: float = -math.inf
     worn: tuple[bool, float] = (False, 0.0)
+    whole_t: float = math.inf
+    missed_s: float = 0.0
 
     @property
     def position(self) -> Variable:

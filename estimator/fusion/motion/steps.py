@@ -9,6 +9,7 @@ from estimator.estimate import Vector3
 from estimator.fusion import physics
 from estimator.fusion.learned.standing import stand_on
 from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.motion.onward import missed_m2, onward_m
 from estimator.fusion.motion.silence import LONGEST_S, unheard_m2, went_on
 from estimator.fusion.motion.unseen import STRAIGHT_S, WALKED_MPS, turned_m2, walked_m
 from estimator.fusion.motion.way import Mark
@@ -20,6 +21,8 @@ TRAIL_S = 4.0
 STRIDE_S = 1.0
 """Over so long at least a velocity is meant: a boot stands for half of each stride."""
 FIRST_DURATION_S = 1.0
+WHOLE_OFF_S = 0.02
+"""Displacements whose epochs are apart by no more follow each other."""
 WALK_M2_PER_M, STAND_M2_PER_S = physics.WALK_M_PER_ROOT_M**2, physics.STAND_M_PER_ROOT_S**2
 FLOOR_M2, CLIMB_M2_PER_M = physics.DISPLACEMENT_FLOOR_M**2, physics.CLIMB_M_PER_ROOT_M**2
 TURN_RAD2_PER_M = physics.HEADING_WALK_RAD_PER_ROOT_M**2
@@ -88,6 +91,7 @@ class Step:
         self._still, self._way_m = node.still, node.way_m
         self._level, self._unseen_up_m2 = node.level, node.unseen_up_m2
         self._marks: list[Mark] = list(node.trail or ((node.pose_t, 0.0, 0.0, 0.0),))
+        self._whole_t, self._missed_s = node.whole_t, node.missed_s
         self.taken = False
 
     def take(self, reading: Displacement) -> Increment | None:
@@ -101,13 +105,22 @@ class Step:
         own = max(t - start, 0.0)
         length = math.sqrt(e * e + n * n + u * u)
         across = up = 0.0
+        onward: Vector3 = (0.0, 0.0, 0.0)
         if start < pose_t:
             share = duration / own
             across = up = (0.5 * share * (1.0 - share) * length) ** 2
             e, n, u, length, own = e * share, n * share, u * share, length * share, duration
         elif start > pose_t:
-            across = (physics.GAP_MPS * min(start - pose_t, LONGEST_S)) ** 2
+            gap_s = min(start - pose_t, LONGEST_S)
+            untold_m2 = missed_m2(gap_s, self._missed_s, isinstance(reading, Led))
+            across = max((physics.GAP_MPS * gap_s) ** 2, untold_m2)
             up = 0.1 * across
+            onward = onward_m(self._marks, gap_s, 0.0)
+            self._missed_s += gap_s
+        if unit_t is None or start > unit_t + WHOLE_OFF_S or self._whole_t > start:
+            self._whole_t = start
+        if t - self._whole_t > STRIDE_S - WHOLE_OFF_S:
+            self._missed_s = 0.0
         too_fast = length > physics.FASTEST_MPS * max(own, physics.TICK_S)
         if too_fast:
             across, up = across + length**2, up + length**2
@@ -129,6 +142,7 @@ class Step:
             noise = sum_of(noise, SET_OFF)
         if own > 0.0:
             self._speed_mps = math.hypot(e, n) / own
+        e, n, u = e + onward[0], n + onward[1], u + onward[2]
         self._pose_t = self._unit_t = t
         self._heading_rad, self.taken = reading.heading_rad, True
         self._way_m += length
@@ -221,6 +235,8 @@ class Step:
             way_m=self._way_m,
             level=self._level,
             unseen_up_m2=self._unseen_up_m2,
+            whole_t=self._whole_t,
+            missed_s=self._missed_s,
         )
 
 

@@ -10,8 +10,10 @@ from numba import njit
 from estimator.estimate import Vector3
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.onward import mark_after, missed_m2, onward_m
 from estimator.fusion.motion.silence import SILENT_S
 from estimator.fusion.motion.steps import Noise, Step, sum_of, unseen_noise
+from estimator.fusion.motion.way import Mark
 from estimator.graph.dense import Array, Indices
 from estimator.graph.filter_kernels import advance
 from estimator.measurements.displacement import move
@@ -119,15 +121,16 @@ def was_silent(node: NodeState) -> bool:
     return node.unit_t is None or node.pose_t > node.unit_t + SILENT_S
 
 
-def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
+def drift_units(state: FusionState, until: Mapping[str, float], onward: bool = False) -> None:
     """Units have not reported up to an epoch at which something else is to be held against their position.
 
-    Their bearers may have stood or walked (`silence.unheard_m2`). A displacement that comes later counts for
-    the part of its time that is left.
+    Their bearers go on as they went for a moment; they may have stood or walked (`silence.unheard_m2`). A
+    displacement that comes later counts for the part of its time that is left.
 
     Args:
         state: the fusion.
         until: the epoch, by unit.
+        onward: nothing is heard of them: what is tells where they go, and nothing of their headings.
     """
     moves = []
     for name, t in until.items():
@@ -136,11 +139,21 @@ def drift_units(state: FusionState, until: Mapping[str, float]) -> None:
         if since_s < SILENT_S <= since_s + t - node.pose_t:
             # From now on ranges alone tell where he goes.
             state.suspected = True
-        noise = unseen_noise(t - node.pose_t, since_s)
+        span_s, missed_s = t - node.pose_t, node.missed_s
+        noise = unseen_noise(span_s, since_s)
+        # What is heard of him meanwhile tells how he goes on: then nothing is missed all along.
+        untold_m2 = missed_m2(span_s, missed_s, node.raw) if since_s == 0.0 else 0.0
+        delta_m, trail = STOOD, tuple[Mark, ...]()
+        if onward and since_s + span_s <= SILENT_S and len(node.trail) > 1:
+            delta_m = onward_m(node.trail, span_s, since_s)
+            trail = (*node.trail, mark_after(node.trail[-1], t, delta_m))
         across, _, up, turn, bias, scale = noise
-        step = (*STOOD, across, up, turn, bias, scale, 1.0)
+        across = max(across, untold_m2)
+        step = (*delta_m, across, up, turn, bias, scale, 1.0)
         state.ledger.add("steps", t, node.index, node.pose_t, *step)
-        moves.append((node, STOOD, t - node.pose_t, noise))
-        state.nodes[name] = replace(node, pose_t=t, trail=())
+        moves.append((node, delta_m, span_s, (across, across, up, turn, bias, scale)))
+        state.nodes[name] = replace(
+            node, pose_t=t, trail=trail, missed_s=missed_s + (span_s if since_s == 0.0 else 0.0)
+        )
     # His unit's frame turns on, whether it reports or not.
     advance_by(state, moves)
