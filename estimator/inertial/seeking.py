@@ -33,9 +33,9 @@ STANDS_S = 0.1
 """What has stood for so long is a foothold."""
 STANDS_MPS = 0.1
 """What may move faster while it does is none that tells what is up."""
-TILT_SIGMA_RAD = 0.03
-"""A boot that rolls over its sole is accelerated by a third of a metre a second, squared."""
-START_SIGMA_MPS = 0.2
+TILT_SIGMA_RAD = 0.02
+"""A boot that rolls over its sole is accelerated by 0.2 m/s²."""
+START_SIGMA_MPS = 0.1
 """What that tilt makes of a velocity in half a second."""
 STEEP = 0.9
 """An axis of which so much points up or down faces nothing that can be told."""
