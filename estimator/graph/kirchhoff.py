@@ -33,6 +33,7 @@ class Kirchhoff:
         self.starts: dict[Variable, int] = {}
         self.size = 0
         self._firsts: dict[VariableKind, Indices] = {}
+        self._turning: Turning | None = None
         self._matrix: Array = np.zeros((capacity, capacity))
         self._vector: Array = np.zeros(capacity)
         self._reference: Array = np.zeros(capacity)
@@ -98,14 +99,17 @@ class Kirchhoff:
 
     def turning(self) -> Turning:
         """Which numbers change when the map is turned as a whole; not to be changed."""
-        pair = np.arange(2)
-        places, speeds = (self.firsts(kind)[:, None] + pair for kind in ("position", "velocity"))
-        return Turning(places, speeds, self.firsts("unit"))
+        if self._turning is None:
+            pair = np.arange(2)
+            places, speeds = (self.firsts(kind)[:, None] + pair for kind in ("position", "velocity"))
+            self._turning = Turning(places, speeds, self.firsts("unit"))
+        return self._turning
 
     def copy(self) -> Self:
         """An independent copy."""
         twin = object.__new__(type(self))
-        twin.starts, twin.size, twin._firsts = self.starts, self.size, self._firsts
+        twin.starts, twin.size = self.starts, self.size
+        twin._firsts, twin._turning = self._firsts, self._turning
         twin._matrix, twin._vector = self._matrix.copy(), self._vector.copy()
         twin._reference = self._reference.copy()
         return twin
@@ -134,7 +138,7 @@ class Kirchhoff:
         self._reference[start:end] = reference
         self._matrix[range(start, end), range(start, end)] = [s**-2 for s in sigma]
         self.starts = {**self.starts, variable: start}
-        self.size, self._firsts = end, {}
+        self.size, self._firsts, self._turning = end, {}, None
 
     def _grow(self, capacity: int) -> None:
         n = self.size
@@ -176,7 +180,7 @@ class Kirchhoff:
         gone_set = set(variables)
         start = 0
         remaining = [v for v in self.starts if v not in gone_set]
-        self.starts, self._firsts = {}, {}
+        self.starts, self._firsts, self._turning = {}, {}, None
         for v in remaining:
             self.starts[v] = start
             start += DIMENSION[v.kind]
