@@ -49,7 +49,7 @@ export function whileUnheard(limits: StalenessLimits): StalenessLimits {
 export const MOVING: Role[] = ["responder", "uav"];
 
 export function isMoving(role: Role): boolean {
-  return role === "responder" || role === "uav";
+  return MOVING.includes(role);
 }
 
 /** Seconds since the newest fused reading; never negative. */
