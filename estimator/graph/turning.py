@@ -54,6 +54,23 @@ def turn_about(here: Array, changed: Turning, pivot_m: Array) -> Array:
 
 
 @njit(cache=True, error_model="numpy")
+def turn_pairs(here: Array, pairs: Indices, pivot_m: Array, by_rad: float) -> None:
+    """Turn places, or velocities, to the left.
+
+    Args:
+        here: x, n, changed.
+        pairs: which of the numbers are their east and north, m × 2.
+        pivot_m: what they are turned about, 2 (m); velocities about nil.
+        by_rad: how far (rad).
+    """
+    cosine, sine = np.cos(by_rad), np.sin(by_rad)
+    for e, n in pairs:
+        way_e, way_n = here[e] - pivot_m[0], here[n] - pivot_m[1]
+        here[e] = pivot_m[0] + way_e * cosine - way_n * sine
+        here[n] = pivot_m[1] + way_e * sine + way_n * cosine
+
+
+@njit(cache=True, error_model="numpy")
 def held(matrix: Array, ways: Array) -> Array:
     """L of each of some changes, k × n.
 

@@ -18,8 +18,8 @@ from estimator.graph.turning import (
     held,
     pivot,
     turn_about,
+    turn_pairs,
     turned_along,
-    turning,
 )
 
 ENDS = ((0, A_E), (3, B_E))
@@ -86,19 +86,12 @@ def unturn(
         told += (absolute + leaked) ** 2 * found.information[r]
     if told > 0.0 and np.isfinite(slipped / told):
         turned_by = slipped / told
-    rotation = turning(turned_by)
-    for e, n_ in changed.places:
-        way_e, way_n = x[e] - pivot_m[0], x[n_] - pivot_m[1]
-        x[e] = pivot_m[0] + way_e * rotation[0, 0] + way_n * rotation[1, 0]
-        x[n_] = pivot_m[1] + way_e * rotation[0, 1] + way_n * rotation[1, 1]
-    for e, n_ in changed.speeds:
-        way_e, way_n = x[e], x[n_]
-        x[e] = way_e * rotation[0, 0] + way_n * rotation[1, 0]
-        x[n_] = way_e * rotation[0, 1] + way_n * rotation[1, 1]
+    still_m = np.zeros(2)
+    turn_pairs(x, changed.places, pivot_m, turned_by)
+    turn_pairs(x, changed.speeds, still_m, turned_by)
     x[changed.headings] += turned_by
     nothing = np.zeros(n)
     change_pairs(matrix, nothing, changed.places, turned_along(reference, x, changed.places, pivot_m))
-    still_m = np.zeros(2)
     change_pairs(matrix, nothing, changed.speeds, turned_along(reference, x, changed.speeds, still_m))
     linearise(table, columns, x, jacobian, residual)
     for r in range(len(table)):

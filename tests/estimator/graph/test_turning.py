@@ -13,6 +13,7 @@ from estimator.graph.turning import (
     held,
     pivot,
     turn_about,
+    turn_pairs,
     turned_along,
     turning,
 )
@@ -31,6 +32,17 @@ def turned_about(here: Array, pivot_m: Array, by_rad: float) -> Array:
     there[SPEEDS] = here[SPEEDS] @ turning(by_rad)
     there[HEADINGS] += by_rad
     return there
+
+
+@given(seeds, st.floats(-7.0, 7.0))
+def test_places_are_turned_about_the_pivot_and_velocities_about_nil(seed: int, by_rad: float) -> None:
+    chance = np.random.default_rng(seed)
+    here, pivot_m = chance.normal(0.0, 30.0, NUMBERS), chance.normal(0.0, 30.0, 2)
+    there = turned_about(here, pivot_m, by_rad)
+    turn_pairs(here, PLACES, pivot_m, by_rad)
+    turn_pairs(here, SPEEDS, BASE_M, by_rad)
+    here[HEADINGS] += by_rad
+    assert here == pytest.approx(there, abs=1e-9)
 
 
 @given(seeds)
