@@ -158,12 +158,14 @@ def take_in(
     found = descend(table, seen, iterations)
     if found.outcome != SOLVED:
         return found.outcome, 0.0, False, 0
-    x, before, turned_rad = reference[:n].copy(), reference[:n].copy(), 0.0
+    x, turned_rad, jacobian = reference[:n].copy(), 0.0, found.jacobian
     follow(seen, found.x, x)
-    follow(seen, found.before, before)
-    jacobian = unturn(
-        table, seen.columns, found, before, matrix, vector[:n], reference[:n], x, changed, base_m
-    )
+    if len(changed.headings) > 0:
+        # Nobody's steps carry a turn on in a map of who has no unit: radios whose place is known hold it.
+        before = reference[:n].copy()
+        follow(seen, found.before, before)
+        known = matrix, vector[:n], reference[:n]
+        jacobian = unturn(table, seen.columns, found, before, *known, x, changed, base_m)
     for row in changed.headings:
         turned_rad = max(turned_rad, abs(x[row] - reference[row]))
     scatter(matrix, vector, seen.columns, jacobian, found.information, found.residual)

@@ -9,7 +9,7 @@ from estimator.estimate import Vector3
 from estimator.fusion import physics
 from estimator.fusion.learned.standing import stand_on
 from estimator.fusion.memory.nodes import NodeState
-from estimator.fusion.motion.onward import missed_m2, onward_m
+from estimator.fusion.motion.onward import mark_after, missed_m2, onward_m
 from estimator.fusion.motion.silence import LONGEST_S, unheard_m2, went_on
 from estimator.fusion.motion.unseen import STRAIGHT_S, WALKED_MPS, turned_m2, walked_m
 from estimator.fusion.motion.way import Mark
@@ -146,8 +146,7 @@ class Step:
         self._pose_t = self._unit_t = t
         self._heading_rad, self.taken = reading.heading_rad, True
         self._way_m += length
-        _, last_e, last_n, last_u = self._marks[-1]
-        self._marks.append((t, last_e + e, last_n + n, last_u + u))
+        self._marks.append(mark_after(self._marks[-1], t, (e, n, u)))
         before_e, before_n, before_u = self.delta_m
         self.delta_m = before_e + e, before_n + n, before_u + u
         self.duration_s += duration
@@ -165,7 +164,7 @@ class Step:
         e, n, u = (share * (two - one) for one, two in zip(before, last, strict=True))
         self.delta_m, self.duration_s = (e, n, u), t - self._pose_t
         self.noise = across_m2, across_m2, 0.1 * across_m2, 0.0, 0.0, 0.0
-        self._marks.append((t, last[0] + e, last[1] + n, last[2] + u))
+        self._marks.append(mark_after(self._marks[-1], t, self.delta_m))
         self._pose_t, self.taken = t, True
 
     def _as_learned(self, noise: Noise, reading: Displacement) -> Noise:

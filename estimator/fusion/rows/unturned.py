@@ -61,9 +61,6 @@ def unturn(
     Returns:
         Derivatives of the readings at the new estimate, that know no turn by where a node stood, m × 8.
     """
-    if len(changed.headings) == 0:
-        # Nobody's steps carry a turn on: a map of who has no unit is held by radios whose place is known.
-        return found.jacobian
     n, jacobian, residual = len(x), np.empty(columns.shape), np.empty(len(table))
     pivot_m = pivot(matrix, reference, changed, base_m)
     was, turned_by = turn_about(reference, changed, pivot_m), 0.0

@@ -11,13 +11,13 @@ from estimator.fusion.memory.prior import SIZES, Key, Prior
 from estimator.graph.dense import Array, Indices
 from estimator.graph.kernels import Integers
 from estimator.graph.kirchhoff import marginalised
-from estimator.graph.turning import Turning, change_pairs, pivot, turning
+from estimator.graph.turning import Turning, change_pairs, pivot, turn_pairs, turning
 from estimator.smoothing.chain.chain import Chain
 from estimator.smoothing.chain.groups import Group
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.numbers import Numbers
 from estimator.smoothing.keyframes.walks import HEADING, PLACES, STATES
-from estimator.smoothing.problem.turned import moved_from, turn, turn_between
+from estimator.smoothing.problem.turned import moved_from, turn_between
 
 OLDEST = 1.0 / 6.0
 """Share of a window that goes when it has become long."""
@@ -94,7 +94,7 @@ class Carried:
     def first(self, x: Array) -> Array:
         """The estimate with the border where the prior was linearised, turned as the map is now, flat."""
         first, there = x.copy(), self._reference.copy()
-        there[self._places] = self.pivot_m + turn(there[self._places] - self.pivot_m, self._turned_by(x))
+        turn_pairs(there, self._places, self.pivot_m, self._turned_by(x))
         lasting = self._at >= self._size
         first[self._at[lasting]] = there[lasting]
         return first

@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from estimator.graph.dense import Array, Indices
-from estimator.graph.turning import change_pairs, turned_along, turning
+from estimator.graph.turning import change_pairs, turned_along
 from estimator.smoothing.chain.chain import Remainder
 from estimator.smoothing.keyframes.layout import Layout
 
@@ -30,11 +30,6 @@ def turn_between(was_m: Array, now_m: Array) -> float:
         across += was_m[i, 0] * now_m[i, 1] - was_m[i, 1] * now_m[i, 0]
         along += was_m[i, 0] * now_m[i, 0] + was_m[i, 1] * now_m[i, 1]
     return float(np.arctan2(across, max(along, 0.0) + STEADY_M**2))
-
-
-def turn(ways: Array, by_rad: float) -> Array:
-    """Ways, … × 2, turned to the left."""
-    return np.asarray(ways @ turning(by_rad))
 
 
 @njit(cache=True)

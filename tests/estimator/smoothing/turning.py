@@ -3,13 +3,13 @@
 import numpy as np
 
 from estimator.graph.dense import Array
+from estimator.graph.turning import turning
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES
-from estimator.smoothing.problem.turned import turn
 
 HEADING_SIGMA_RAD = 0.1
 BEACONS_M = {"b1": (5.0, 8.0), "b2": (-6.0, 12.0)}
@@ -87,6 +87,11 @@ def walk_from_afar(until_s: float) -> list[AnyReading]:
             range_m = float(np.hypot(*(at - place)) + chance.normal(0.0, 0.1))
             readings.append(Range(t=second, a="ff1", b=name, range_m=range_m, technology="uwb"))
     return readings
+
+
+def turn(ways: Array, by_rad: float) -> Array:
+    """Ways, … × 2, turned to the left."""
+    return np.asarray(ways @ turning(by_rad))
 
 
 def turned_map(layout: Layout, x: Array, by_rad: float) -> tuple[Array, Array]:

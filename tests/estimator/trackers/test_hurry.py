@@ -59,8 +59,7 @@ def test_what_is_told_hangs_neither_on_what_was_asked_nor_on_restarts() -> None:
         for reading in batch:
             often.fold([reading])
         often.estimates()
-        if number % 7 == 0:  # now after one gateway, now after the other
-            often.settled()
+        often.settled()
         for tracker in (rarely, killed):
             tracker.fold(batch)
         if number % 9 == 4:
