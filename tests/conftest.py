@@ -10,7 +10,7 @@ import pytest
 import sqlalchemy as sa
 
 from tests.needs import missing
-from tests.running import Post, Server, running
+from tests.running import Post, Server, close_all, running
 
 # As the server and the worker do, before anything imports numpy: the threads of a matrix of a few rows wait
 # for each other for longer than they reckon, and those of one test keep the next one from its processor.
@@ -34,11 +34,22 @@ def shared_data() -> Path:
     return folder
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """A server that the tests of a module share, each with incidents of its own."""
+@pytest.fixture(scope="session")
+def running_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """One server for all modules: its three processes take seconds of a processor to begin."""
     with running(tmp_path_factory.mktemp("server") / "data") as server:
-        yield server.until_it_computes()
+        yield server
+
+
+@pytest.fixture(scope="module")
+def server(running_server: Server) -> Server:
+    """A server at work that the tests of a module share, each with incidents of its own.
+
+    Earlier modules have left closed incidents there, and none that is active.
+    """
+    server = running_server.until_it_computes()
+    close_all(server)
+    return server
 
 
 @pytest.fixture(scope="module")

@@ -1,5 +1,6 @@
 """The whole API under generated requests: no defect, and every refusal in the contract's form."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import schemathesis
 from schemathesis.specs.openapi.checks import negative_data_rejection, positive_data_acceptance
 
 from backend.errors import PROBLEM_MEDIA_TYPE
-from tests.running import ANSWERED_WITHIN_S, Post, Server
+from tests.running import ANSWERED_WITHIN_S, Post, Server, running
 
 # `make check` holds this file against the application's own document.
 DOCUMENT = Path(__file__).parents[2] / "frontend" / "openapi.json"
@@ -17,6 +18,13 @@ schema = schemathesis.openapi.from_path(DOCUMENT)
 
 # JSON Schema cannot say that two fields must agree; and a batch with bad readings is taken, by contract.
 BEYOND_A_SCHEMA = (negative_data_rejection, positive_data_acceptance)
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server of its own: whoever came after would find what generated requests have made of it."""
+    with running(tmp_path_factory.mktemp("fire") / "data") as server:
+        yield server.until_it_computes()
 
 
 @pytest.fixture(scope="module")

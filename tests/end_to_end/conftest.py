@@ -9,7 +9,7 @@ from playwright.sync_api import Browser, sync_playwright
 
 from tests.end_to_end.commander import Commander
 from tests.needs import missing
-from tests.running import Post
+from tests.running import Server, close_all
 
 ROOT = Path(__file__).resolve().parents[2]
 SCREEN = ROOT / "backend" / "screen" / "index.html"
@@ -28,8 +28,8 @@ FLAGS = [
 ]
 
 
-# One a module, not one a session: while it runs, no other test could run an event loop of its own.
-@pytest.fixture(scope="module")
+# One for this package, not one a session: while it runs, no other test could run an event loop of its own.
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     """Chromium without a window."""
     if not SCREEN.is_file():
@@ -44,10 +44,9 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture
-def nothing_left_open(post: Post) -> None:
+def nothing_left_open(server: Server) -> None:
     """Close what was opened before: calls for help in it would be told on every screen."""
-    for incident in post.http.get("/incidents", params={"state": "active"}).json():
-        post.http.patch(f"/incidents/{incident['id']}", json={"state": "closed"})
+    close_all(server)
 
 
 @pytest.fixture

@@ -49,11 +49,10 @@ def test_a_screen_whose_server_was_killed_says_so_ages_and_reconnects_by_itself(
 
 
 def test_an_estimator_that_could_not_go_on_is_told_apart_from_silent_crews(
-    own_server: Server, commander: Commander
+    server: Server, post: Post, commander: Commander
 ) -> None:
-    post = Post(own_server.url)
     incident = one_inside(post)
-    commander.opens(own_server.url, incident)
+    commander.opens(server.url, incident)
     assert not commander.stands_still
 
     commander.hears_that_the_estimator_broke()
@@ -62,7 +61,6 @@ def test_an_estimator_that_could_not_go_on_is_told_apart_from_silent_crews(
     assert not commander.connection_lost
     assert commander.mode == "NOT LIVE"
     commander.sees("WALKER", "Stale", within_s=3)
-    post.http.close()
 
 
 def test_what_was_reported_and_no_worker_took_in_is_not_passed_over_in_silence(
@@ -83,17 +81,15 @@ def test_what_was_reported_and_no_worker_took_in_is_not_passed_over_in_silence(
 
 
 def test_a_tablet_that_wakes_up_calls_nothing_live_before_it_has_heard_the_server(
-    own_server: Server, commander: Commander
+    server: Server, post: Post, commander: Commander
 ) -> None:
-    post = Post(own_server.url)
     incident = one_inside(post)
-    commander.opens(own_server.url, incident)
+    commander.opens(server.url, incident)
     assert commander.mode == "LIVE"
     server_answers = commander.sleeps(600)
     eventually(lambda: "10 min" in commander.words_of_the_loss)
     server_answers()
     eventually(lambda: commander.mode == "LIVE" and not commander.connection_lost)
-    post.http.close()
 
 
 def test_on_a_tablet_a_lost_connection_pushes_nothing_off_the_screen_and_leaves_no_trace(

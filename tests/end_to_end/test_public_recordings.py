@@ -9,7 +9,7 @@ import pytest
 from backend.live.frame import Tracks
 from backend.recordings import convert
 from backend.recordings.datasets.truth import truth_of
-from tests.running import Post, running
+from tests.running import Post
 
 PLAIN_FILTER_RMSE_M = 2.4
 """What a filter without range scale and gyro bias reaches on plaza1 is 2.33 m: this must not be worse."""
@@ -27,15 +27,13 @@ def posted(post: Post, name: str, folder: Path) -> tuple[str, int]:
 
 
 @pytest.mark.timeout(400)
-def test_plaza1_through_http_is_tracked_second_by_second(tmp_path: Path, shared_data: Path) -> None:
-    with running(tmp_path / "data") as server:
-        post = Post(server.url)
-        incident, newest = posted(post, "plaza1", shared_data / "plaza1")
-        for _ in range(5):
-            if post.http.get(f"/incidents/{incident}/frame?min_seq={newest}&timeout_s=60").status_code == 200:
-                break
-        frame = post.frame(incident, min_seq=newest, timeout_s=60)
-        tracks = msgspec.json.decode(post.tracks(incident), type=Tracks).tracks
+def test_plaza1_through_http_is_tracked_second_by_second(post: Post, shared_data: Path) -> None:
+    incident, newest = posted(post, "plaza1", shared_data / "plaza1")
+    for _ in range(5):
+        if post.http.get(f"/incidents/{incident}/frame?min_seq={newest}&timeout_s=60").status_code == 200:
+            break
+    frame = post.frame(incident, min_seq=newest, timeout_s=60)
+    tracks = msgspec.json.decode(post.tracks(incident), type=Tracks).tracks
 
     robot = np.array(next(track.points for track in tracks if track.node == "robot"))
     assert np.array_equal(np.diff(robot[:, 0]), np.ones(len(robot) - 1)), "not a point per second"

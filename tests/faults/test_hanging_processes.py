@@ -24,11 +24,17 @@ def stopped(pid: int) -> Iterator[None]:
             os.kill(pid, signal.SIGCONT)
 
 
+@pytest.fixture(scope="module")
+def disturbed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server whose processes these tests alone disturb: each leaves it well."""
+    with running(tmp_path_factory.mktemp("hanging") / "data") as server:
+        yield server
+
+
 @pytest.fixture
-def at_work(tmp_path: Path) -> Iterator[Server]:
-    """A server of its own with a worker that computes."""
-    with running(tmp_path / "data") as server:
-        yield server.until_it_computes()
+def at_work(disturbed: Server) -> Server:
+    """The same with a worker that computes."""
+    return disturbed.until_it_computes()
 
 
 def step(second: int) -> dict[str, object]:
