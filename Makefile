@@ -5,6 +5,8 @@ BIN := .venv/bin
 # Node comes from PyPI into the virtual environment, so that Python is all a fresh machine needs.
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
+# Where nothing compiled is kept, each of the many processes that tests start would compile every module anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 # What does not wait for each other runs side by side: the screen is built while numba compiles.
 MAKEFLAGS += --jobs=2
@@ -41,7 +43,7 @@ browser:
 run: setup
 	$(BIN)/firethread serve --data .data --open --demo
 
-# A worker for each core; worksteal keeps most modules, and the servers that they start, on one of them.
+# A worker for each core and one that waits (tests/conftest.py); worksteal keeps most modules on one of them.
 test: setup browser check test-screen
 	$(BIN)/pytest --numprocesses=auto --dist=worksteal
 

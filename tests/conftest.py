@@ -1,7 +1,7 @@
 """Fixtures that tests of several packages share."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 from uuid import uuid4
 
@@ -23,6 +23,19 @@ hypothesis.settings.register_profile("desk", deadline=None)
 hypothesis.settings.load_profile("gate" if os.environ.get("CI") else "desk")
 
 ROOT = Path(__file__).resolve().parent.parent
+# What is first waits most: for processes that hang and are killed, for a browser, for servers.
+FIRST = [ROOT / "tests" / folder for folder in ("faults", "end_to_end", "backend")]
+
+
+@pytest.hookimpl(wrapper=True, optionalhook=True)
+def pytest_xdist_auto_num_workers() -> Generator[None, int, int]:
+    """One worker more than there are processors: one of them mostly waits."""
+    return (yield) + 1
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with what waits, so that at the end nobody waits for it: what only computes fills the gaps."""
+    items.sort(key=lambda item: [folder not in item.path.parents for folder in FIRST])
 
 
 @pytest.fixture(scope="session")
