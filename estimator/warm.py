@@ -9,15 +9,16 @@ from estimator.fusion.learned.noise import single_sigma
 from estimator.fusion.learned.rival import full, gone_on
 from estimator.fusion.memory.ledger import COLUMNS
 from estimator.fusion.motion.free import free_motion
-from estimator.fusion.motion.silence import unheard_m2, went_on
+from estimator.fusion.motion.silence import gone_m2, unheard_m2, went_on
 from estimator.fusion.motion.swings import swung_m2
 from estimator.fusion.motion.units import walk
-from estimator.fusion.motion.way import End, offset
+from estimator.fusion.motion.way import End, offset, turned_m
 from estimator.fusion.readings.crossings import crossings_in
 from estimator.fusion.readings.echoes import tell as tell_echoes
 from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.report import shown, widen
 from estimator.fusion.rows import followed
+from estimator.fusion.rows.arcs import fallen_back
 from estimator.fusion.rows.rows import FIELDS, ONE
 from estimator.fusion.update import hold
 from estimator.graph.dense import factorise, inverse
@@ -26,7 +27,7 @@ from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
 from estimator.graph.scatter import add_motion, add_part, couple, localise, scatter_rows
 from estimator.graph.triangular import inverted
-from estimator.graph.turning import Turning, change_pairs, pivot, turned_along, turning
+from estimator.graph.turning import Turning, change_pairs, pivot, turn_pairs, turned_along, turning
 from estimator.graph.variable import Variable
 from estimator.inertial.advancing import advance
 from estimator.inertial.boot import Boot
@@ -44,7 +45,7 @@ from estimator.smoothing.keyframes.ends import Ground, Nodes, Table, place_ends
 from estimator.smoothing.keyframes.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
 from estimator.smoothing.keyframes.ways import Way, ways_of
 from estimator.smoothing.learning.learn import noise_scores
-from estimator.smoothing.learning.scores import through
+from estimator.smoothing.learning.scores import PROBES, follow_on, probe, through
 from estimator.smoothing.learning.slips import gains, unsure
 from estimator.smoothing.problem.turned import moved_from, turn_between
 from estimator.smoothing.readings.arranged import scattered, sigmas
@@ -72,7 +73,8 @@ def warm_up() -> None:
     strided = np.full((2, 3), 0.5).T
     for states in ((one, one), (strided[0], strided[1])):
         predict_range(place, place, *states)
-    predict_rssi(one, place, place, one, strided[1])
+    for exponent in (one, strided[1]):
+        predict_rssi(one, place, place, one, exponent)
     boot, rests = Boot.new(0.0), np.zeros((60, 3)) + np.array([0.0, 0.0, 9.8])
     taken = advance(boot, rests, np.zeros((60, 3)), 0.01)
     advance(boot, rests[taken:], np.zeros((60, 3))[taken:], 0.01)
@@ -86,7 +88,7 @@ def warm_up() -> None:
     wrap(one)
     for noise in (strided, strided.copy()):
         weigh(one, one, one, *noise)
-    mixture_cost(one, one, *strided)
+        mixture_cost(one, one, *noise)
     cauchy_cost(one, 1.0)
     for noise in (strided, strided.copy()):
         # Of one reading alone the columns of a table lie as those of an array do.
@@ -118,7 +120,8 @@ def _warm_chain() -> None:
     add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)
     eliminate(0, k, diagonal, link, wide)
     take_off(0, k, wide, corner.copy(), rest.copy())
-    carry(diagonal, link, wide, np.zeros((k, n, 2))[:, :, ::2], np.zeros((s, 1)))
+    for right in (np.zeros((k, n, 2))[:, :, ::2], np.zeros((k, n, 2), order="F")):
+        carry(diagonal, link, wide, right, np.zeros((s, right.shape[2])))
     substitute(diagonal, link, wide, rest, np.zeros((k, n)))
     add_part(slab, corner, rest, corner, rest)
     selected_inverse(diagonal, link, wide, corner, np.zeros((k, 1, n, n)), np.zeros((k - 1, 1, n, n)))
@@ -146,6 +149,8 @@ def _warm_chain() -> None:
     short_costs(one, one)
     nowhere = np.full((1, 2), -1)
     through(np.zeros((1, 2)), n, n, columns, slab, np.zeros((1, ANY)), one, nowhere, nowhere)
+    probe(np.zeros((n, PROBES)), n, n, columns, slab, np.zeros((1, ANY)), one)
+    follow_on(slab, one)
     ask(slab, heard, 0, 0, one, one, 0.0)
     descended(
         Ranged(place[:, :2].copy(), one, one, one, place), place[:, :2].copy(), True, np.zeros(3), np.eye(3)
@@ -155,6 +160,7 @@ def _warm_chain() -> None:
     turned_by = turn_between(place[:, :2], place[:, :2])
     turning(turned_by)
     moved_from(x, x, pair, pair, place[0, :2], turned_by)
+    turn_pairs(x, pair, place[0, :2], 0.0)
     change_pairs(np.eye(2), one, pair, turned_along(x, x, pair, place[0, :2]))
     pivot(np.eye(len(x)), x, Turning(pair, pair, pair[0]), place[0, :2])
     add_bends(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
@@ -170,7 +176,10 @@ def _warm_filter() -> None:
     shown(np.zeros(1, dtype=np.intp), graph.reference, inverse(factorise(graph.information)))
     inverted(graph.storage()[0], np.eye(3))
     swung_m2(np.zeros((1, 2, 1)), np.ones(1))
+    fallen_back(np.ones(1))
+    turned_m((0.0, 0.0, 0.0))
     unheard_m2(1.0, 0.0)
+    gone_m2(1.0, 1.0, 1.0, 0.0)
     went_on(1.0)
     single_sigma(1.0, 1.0, 1.0)
     free_motion("responder", 1.0)
