@@ -6,6 +6,8 @@ sightings, each used once. Who moves cannot wait for that: what is older tells e
 After some seconds he is shown at the best mode, and the others are told as images of it (decision 0026).
 """
 
+import math
+from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -71,15 +73,31 @@ def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None
         if covariance is None or len(covariance) != state.graph.size:
             covariance = state.graph.covariance()
         rows = state.graph.rows(states)
-        chosen = _choose(state, node, sightings, state.graph.value(states).copy(), covariance[rows, rows])
+        extra = state.graph.value(states).copy()
+        chosen = _choose(state, node, sightings, extra, covariance[rows, rows], late)
         if chosen is not None and (chosen.sure or (late and _is_place(sightings, chosen.mode))):
             _begin(state, node, sightings, chosen, since_t)
             covariance = None
 
 
 def _choose(
-    state: FusionState, node: NodeState, seen: Sightings, extra: Array, extra_covariance: Array
+    state: FusionState,
+    node: NodeState,
+    seen: Sightings,
+    extra: Array,
+    extra_covariance: Array,
+    late: bool,
 ) -> Chosen | None:
+    """Where a node may begin; None where no place fits, or the best one is too unsure to begin at.
+
+    Args:
+        state: the fusion.
+        node: the node.
+        seen: its sightings.
+        extra: states of their technology, 2.
+        extra_covariance: of these, 2 × 2.
+        late: it begins at the best place, however unsure that is.
+    """
     moving = node.role in MOVING_ROLES
     sigma = seen.sigma * state.learned(state.sources[seen.source]).factor
     spread = seen.spread
@@ -101,19 +119,34 @@ def _choose(
         extra=extra,
         extra_covariance=extra_covariance,
     )
-    modes = find_modes(sought)
-    if not modes:
+    least_m = physics.DECIDED_SIGMA_M[kind]
+    modes = find_modes(sought, math.inf if late else least_m)
+    decided = bool(modes) and modes[0].sigma_m <= least_m
+    if not (decided or (modes and late)):
         return None
     outliers = state.learned(state.sources[seen.source]).outliers(physics.NOISES[seen.kind][0])
-    best = modes[0]
-    odd = [_odd_cost(mode, sought, seen.alike, outliers) for mode in modes]
-    others = [
-        mode
-        for mode, cost in zip(modes[1:], odd[1:], strict=True)
-        if min(mode.cost - best.cost, cost - odd[0]) < physics.MODE_MARGIN
-    ]
-    sure = best.sigma_m <= physics.DECIDED_SIGMA_M[kind] and not others
-    return Chosen(best, others, sure, sought.up_m, up_sigma)
+    others = _others(modes, sought, seen.alike, outliers)
+    return Chosen(modes[0], others, decided and not others, sought.up_m, up_sigma)
+
+
+def _others(modes: Sequence[Mode], sought: Sought, alike: Array, outliers: float) -> list[Mode]:
+    """The modes beside the best one that fit about as well, by either cost.
+
+    Args:
+        modes: best first.
+        sought: what was measured.
+        alike: see `_odd_cost`.
+        outliers: see `_odd_cost`.
+    """
+    best, *rest = modes
+    least = _odd_cost(best, sought, alike, outliers) if rest else 0.0
+
+    def fits(mode: Mode) -> bool:
+        if mode.cost - best.cost < physics.MODE_MARGIN:
+            return True
+        return _odd_cost(mode, sought, alike, outliers) - least < physics.MODE_MARGIN
+
+    return [mode for mode in rest if fits(mode)]
 
 
 def _odd_cost(mode: Mode, sought: Sought, alike: Array, outliers: float) -> float:

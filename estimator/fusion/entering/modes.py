@@ -1,5 +1,6 @@
 """All places from which a set of ranges or powers may come: a robust solve from many starts."""
 
+import math
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -112,11 +113,15 @@ def residuals_of(sought: Sought, place_m: Array, extra: Array) -> Array:
     return sought.value - predict_rssi(sought.value, sought.points, there, *states).predicted
 
 
-def find_modes(sought: Sought) -> list[Mode]:
+def find_modes(sought: Sought, unsure_m: float = math.inf) -> list[Mode]:
     """Places that fit, best first, each apart from the better ones (`APART_M`, or three sigma).
 
     Levenberg-Marquardt with the Cauchy loss from rings around the first, middle and last place. The states of
     the technology are solved along, so that an unknown scale does not spoil the fit.
+
+    Args:
+        sought: what was measured.
+        unsure_m: where the best place has a larger standard deviation, it is the only one that is told (m).
     """
     sought = _thinned(sought)
     prior = np.zeros((5, 5))
@@ -134,6 +139,8 @@ def find_modes(sought: Sought) -> list[Mode]:
         spread = float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1]))
         up_sigma_m = float(np.sqrt(covariance[2, 2]))
         modes.append(Mode(state[i, :3].copy(), float(cost[i]), spread, up_sigma_m, state[i, 3:].copy()))
+        if len(modes) == 1 and spread > unsure_m:
+            break
         # Most starts lead to the same few places.
         off = state[left, :2] - state[i, :2]
         apart = np.hypot(off[:, 0], off[:, 1]) > max(APART_M, 3.0 * spread)

@@ -53,7 +53,7 @@ def heard_between(state: FusionState, node: NodeState) -> tuple[float, float]:
 def of_node(state: FusionState, node: NodeState, since_t: float) -> Sightings | None:
     """The sightings of a node by the technology that saw it most, ranges first; None where there are none."""
     pairs = state.ledger.table("pairs")
-    pairs = pairs[np.isin(pairs[:, 1], (RANGE, RSSI)) & (pairs[:, 0] >= since_t)]
+    pairs = pairs[(pairs[:, 1] <= RSSI) & (pairs[:, 0] >= since_t)]
     mine = pairs[(pairs[:, 2] == node.index) | (pairs[:, 3] == node.index)]
     ranged = mine[:, 1] == RANGE
     if ranged.any():
