@@ -13,7 +13,7 @@ from estimator.fusion import physics
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.steps import CLIMB_M2_PER_M
 from estimator.graph.dense import Array
-from estimator.smoothing.images.heights import UP, over_all
+from estimator.smoothing.images.heights import UP, Told, over_all
 from estimator.smoothing.problem.solve import Problem
 from estimator.smoothing.problem.solved import Solved
 
@@ -69,9 +69,9 @@ def climbed(
     trial = _trial(problem, solved, level, build)
     found = trial.solve(x, iterations=SOON, resting=resting)
     state.level_cost = solved.cost / max(len(problem.rows.slab), 1)
-    flat = problem.assemble(solved.x, solved.linear, solved.weighted, solved.motions)
-    before = over_all(problem, solved, flat)
+    before: Told | None = None
     if not found.rests:
+        before = _as_it_is(problem, solved)
         after = over_all(trial, found, found.chain)
         if (after.each[level] > before.each[level] + HOPELESS).all():
             return problem, solved
@@ -79,6 +79,7 @@ def climbed(
     rose = [i for i in level if np.ptp(_heights(problem, found.x, i)) > CLIMBED_M]
     if not rose or found.cost > solved.cost - CLEAR:
         return problem, solved
+    before = before or _as_it_is(problem, solved)
     after = over_all(trial, found, found.chain)
     likelier = [i for i in rose if after.each[i] < before.each[i]]
     if likelier and likelier != level:
@@ -95,6 +96,12 @@ def climbed(
     _let_climb(state, [layout.walks[i].number for i in likelier], layout.since_t)
     anew = build(state)
     return anew, anew.solve(found.x, resting=resting)
+
+
+def _as_it_is(problem: Problem, solved: Solved) -> Told:
+    """See `over_all`: of a solution whose own equations are left for others."""
+    chain = problem.assemble(solved.x, solved.linear, solved.weighted, solved.motions)
+    return over_all(problem, solved, chain)
 
 
 def _trial(
