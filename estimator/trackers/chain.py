@@ -109,8 +109,10 @@ def found_m(before: FusionState, after: FusionState) -> float:
     """
     farthest_m = 0.0
     for name, node in after.nodes.items():
+        if node.mode != "unit":
+            continue
         was = before.nodes.get(name)
-        if was is None or not node.mode == was.mode == "unit":
+        if was is None or was.mode != "unit":
             continue
         off_m = float(np.hypot(*(after.place(node) - before.place(was))[:2])) - (node.way_m - was.way_m)
         if off_m > max(JOLT_M, farthest_m):

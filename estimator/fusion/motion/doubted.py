@@ -123,7 +123,8 @@ def _asked_by_powers(state: FusionState, units: list[NodeState]) -> list[bool]:
 
 def _odd(noise: LearnedNoise) -> bool:
     """Whether powers are off by more, or more alike, than was assumed: a bad unit makes them so, or walls."""
-    return noise.factor > 1.0 or noise.shared > physics.SHARED_NOISE
+    factor, shared, _ = noise.terms(0.0)
+    return factor > 1.0 or shared > physics.SHARED_NOISE
 
 
 def _by_powers(node: NodeState, odd: bool) -> bool:
