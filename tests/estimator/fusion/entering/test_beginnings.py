@@ -31,6 +31,14 @@ def test_from_a_straight_path_both_mirror_images_are_found() -> None:
     assert modes[1].cost - modes[0].cost < 1.0
 
 
+def test_beside_a_best_place_that_is_too_unsure_no_other_is_told() -> None:
+    path = np.column_stack([np.arange(20.0), np.zeros(20), np.zeros(20)])
+    best, other, *_ = find_modes(sought(path, np.array([8.0, 6.0, 0.0])))
+    for unsure_m, told in ((0.5 * best.sigma_m, 1), (2.0 * best.sigma_m, 2)):
+        modes = find_modes(sought(path, np.array([8.0, 6.0, 0.0])), unsure_m)
+        assert [tuple(m.position_m) for m in modes[:2]] == [tuple(m.position_m) for m in (best, other)][:told]
+
+
 def test_after_a_turn_one_mode_is_clearly_best() -> None:
     path = np.array([[min(k, 10.0), max(k - 10.0, 0.0), 0.0] for k in range(20)])
     modes = find_modes(sought(path, np.array([8.0, 6.0, 0.0])))
