@@ -21,7 +21,7 @@ from estimator.fusion.readings.crossings import hear
 from estimator.fusion.readings.displacements import move_units, returns
 from estimator.fusion.readings.jumps import another as another_altimeter
 from estimator.fusion.readings.pairs import AnyPair, Pairs
-from estimator.fusion.readings.same_epoch import joined
+from estimator.fusion.readings.untold import begun
 from estimator.fusion.rows.rows import Single, table_of
 from estimator.fusion.update import update
 from estimator.inertial.samples import AnyFolded, Samples
@@ -71,7 +71,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         elif isinstance(reading, Samples):
             displacements += boots.displacements_of(state, reading)
     holds += hear(state, [r for r in readings if isinstance(r, Rssi)])
-    displacements = apart.set_aside(state, joined(state, displacements))
+    displacements = apart.set_aside(state, begun(state, displacements))
     holds.sort(key=attrgetter("t"))
     late_t, gone_out = until_t - physics.PENDING_S, {r.node for r in retired}
     for name, changed_t in state.announced.items():

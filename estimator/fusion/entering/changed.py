@@ -12,6 +12,7 @@ from msgspec.structs import replace
 
 from estimator.fusion.entering.introduce import initial_turn, turn_sigma
 from estimator.fusion.entering.worn import RIGHT, reported
+from estimator.fusion.learned.cadence import Cadence
 from estimator.fusion.learned.calibration import UNTOLD
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -36,7 +37,9 @@ def announce(state: FusionState, reading: Node) -> None:
     """Take down that a unit is another one from now on: what is navigated of the old one ends."""
     node = state.nodes[reading.node]
     state.navigations.pop(node.node, None)
-    state.nodes[node.node] = replace(node, changed=(reading.t, reading.heading_rad), still=None)
+    state.nodes[node.node] = replace(
+        node, changed=(reading.t, reading.heading_rad), still=None, cadence=Cadence()
+    )
     state.announced[node.node] = reading.t
     faces = "as told" if reading.heading_rad is not None else "not known"
     text = (

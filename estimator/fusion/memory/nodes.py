@@ -8,6 +8,7 @@ import msgspec
 
 from estimator.estimate import Covariance6, Vector3
 from estimator.fusion.images import Otherwise
+from estimator.fusion.learned.cadence import Cadence
 from estimator.fusion.learned.calibration import UNTOLD, Told
 from estimator.fusion.learned.rival import Rival
 from estimator.fusion.learned.standing import Standing
@@ -63,6 +64,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         otherwise: where it may be instead, by what readings tell as well.
         whole_t: since when its unit's displacements follow each other without a gap.
         missed_s: for how long it has told nothing, all gaps since it last told a whole stride.
+        cadence: how its unit reports, of displacements of which it does not say since when they are.
         walk_factors: learned variances of its unit over the assumed ones: of displacements, of its heading.
     """
 
@@ -104,6 +106,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     worn: tuple[bool, float] = (False, 0.0)
     whole_t: float = math.inf
     missed_s: float = 0.0
+    cadence: Cadence = Cadence()
 
     @property
     def position(self) -> Variable:
