@@ -10,11 +10,14 @@ from estimator.fusion import physics
 from estimator.graph.dense import Array
 
 T, WAY, ALIKE, KEPT, ERROR, VALUE, ECHO_M, LOWER_S, ECHO_ODDS = range(9)
+TOLD, REPEATS, SINCE_T, SINCE_WAY = range(9, 13)
 """Columns of a link's newest reading: its epoch; how far both ends had walked by then (m); how many readings,
 itself included, share its error; how much of the error before it still held, 0 to 1; its error in units of
 the assumed sigma, NaN before it is fused. Of ranges, see `echoes`: what was read (m); what it is too long by,
-or below 0 how much shorter it is than was believed before (m); for how long (s); log odds that it is."""
-NEW = (-math.inf, 0.0, 0.0, 0.0, math.nan, 0.0, 0.0, 0.0, 0.0)
+or below 0 how much shorter it is than was believed before (m); for how long (s); log odds that it is. See
+`repeated`: what was told (m), believed or not; how often in a row; since when it is another value than before
+(s), and how far both ends had walked by then (m)."""
+NEW = (-math.inf, 0.0, 0.0, 0.0, math.nan, 0.0, 0.0, 0.0, 0.0, math.nan, 0.0, -math.inf, 0.0)
 """Nothing is left of a reading that was made an eternity ago."""
 NONE: Array = np.zeros((0, len(NEW)))
 SPARE = 16
@@ -27,7 +30,7 @@ class Links:
 
     Args:
         numbers: the row of each link.
-        table: their newest readings, links × 9 or more; both are taken over.
+        table: their newest readings, links × 13 or more; both are taken over.
 
     Attributes:
         numbers: the row of each link, which is its number in the ledger as well, by the technology that its
@@ -45,7 +48,7 @@ class Links:
 
     @property
     def table(self) -> Array:
-        """The newest readings, links × 9: a view, changed in place."""
+        """The newest readings, links × 13: a view, changed in place."""
         return self._table[: len(self.numbers)]
 
     def number(self, source: str, a: str, b: str) -> int:
@@ -71,7 +74,7 @@ def follow(link: Array, t: float, way_m: float) -> None:
     """Go on to the next reading on a link.
 
     Args:
-        link: its row, 9, changed.
+        link: its row, 13, changed.
         t: epoch of the reading (s).
         way_m: how far both ends have walked by then (m).
     """

@@ -22,6 +22,7 @@ from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import SILENT_S
 from estimator.fusion.motion.way import End, Mark, end_of, table_of_marks
 from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
+from estimator.fusion.readings.repeated import is_repeated
 from estimator.fusion.rows.rows import FIELDS, table_from
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import Bearing
@@ -109,6 +110,9 @@ class Pairs:
             if technology is None:
                 technology = self._technology(kind, source, between)
             link = link_of(source, name_a, name_b)
+            if kind == RANGE and is_repeated(state.links, link, t, value, a.node, b.node):
+                state.count("not_fused")
+                continue
             told += (t, value, sigma, constant, technology, link, a.number, b.number)
             if between and not crossing:
                 fused += 1
