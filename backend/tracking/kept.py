@@ -18,11 +18,15 @@ class _Sum(Generic[T]):
     Args:
         seq: newest log entry in it.
         begin: begins it.
+
+    Attributes:
+        seq: newest log entry in it.
+        began: when it was begun, by the clock of the event loop (s).
     """
 
     def __init__(self, seq: int, begin: Callable[[], Coroutine[Any, Any, T]]) -> None:
         self.seq = seq
-        self._began = self._ended = asyncio.get_running_loop().time()
+        self.began = self._ended = asyncio.get_running_loop().time()
         self.task = asyncio.create_task(self._timed(begin))
 
     async def _timed(self, begin: Callable[[], Coroutine[Any, Any, T]]) -> T:
@@ -41,7 +45,7 @@ class _Sum(Generic[T]):
         Of a log that grows, a sum that takes longer would never be told: by then there is a newer entry. It
         is told for as long again as it took.
         """
-        took_s = self._ended - self._began
+        took_s = self._ended - self.began
         recent = asyncio.get_running_loop().time() - self._ended < took_s
         return self.seq >= seq or (took_s > within_s / 2 and recent)
 
@@ -95,8 +99,10 @@ class Kept(Generic[T]):
             async with asyncio.timeout_at(until):
                 return await asyncio.shield(one.task)
         except TimeoutError:
+            so_far_s = asyncio.get_running_loop().time() - one.began
             raise TooSlow(
-                f"{doing} takes longer than {within_s:g} s; it goes on: ask again in a minute.",
+                f"{doing} takes longer than {within_s:g} s; it goes on, {so_far_s:.0f} s so far: "
+                "ask again in a minute.",
                 retry_after_s=AGAIN_AFTER_S,
             ) from None
         except asyncio.CancelledError:

@@ -17,6 +17,7 @@ from tests.end_to_end.noting import BoardNoted
 from tests.end_to_end.others import OthersSeen
 from tests.end_to_end.past import PastCompared
 from tests.end_to_end.warned import WarningsSeen
+from tests.end_to_end.weighing import WhyAsked
 from tests.running import eventually
 
 
@@ -32,7 +33,7 @@ class BoardRow:
 
 
 class Commander(
-    MapSeen, LayoutSeen, OthersSeen, PastCompared, SignInSeen, DeviceUsed, BoardNoted, WarningsSeen
+    MapSeen, LayoutSeen, OthersSeen, PastCompared, SignInSeen, DeviceUsed, BoardNoted, WarningsSeen, WhyAsked
 ):
     """What a commander sees and does.
 
@@ -44,6 +45,7 @@ class Commander(
         super().__init__(page)
         self.requested: list[str] = []
         self.faults: list[str] = []
+        self.asked_about = []
         page.on("request", lambda request: self.requested.append(request.url))
         page.on("websocket", lambda socket: self.requested.append(socket.url))
         page.on("pageerror", lambda error: self.faults.append(str(error)))

@@ -208,11 +208,6 @@ class LayoutSeen:
         top: float = self.page.evaluate("document.querySelector('header').getBoundingClientRect().top")
         return -top
 
-    def asks_why_here(self) -> None:
-        """Press the card's question what holds the fix, and wait for the answer."""
-        self.page.get_by_test_id("why").get_by_role("button", name="Why here?").click()
-        self.page.get_by_test_id("held").wait_for(timeout=60_000)
-
     @property
     def map_height(self) -> float:
         """How high the map is (CSS pixels)."""

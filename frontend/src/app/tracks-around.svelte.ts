@@ -1,12 +1,9 @@
 /** Tracks for a replay, around the moment that is shown: asked for when they are wanted, a stretch of time at once. */
 import type { Track } from "../domain/types";
-import { RequestFailed } from "../sources/api";
+import { AGAIN_MS, patiently } from "./patience";
 
 /** So much before and after the moment that is shown is asked for (s). */
 const REACH_S = 900;
-/** The server goes on with a sum that takes long: then it is asked for again (ms). */
-const AGAIN_MS = 3000;
-const TOO_SLOW = 504;
 
 /** @returns the tracks between two moments (Unix s) */
 export type AskTracks = (from: number, to: number, signal: AbortSignal) => Promise<Track[]>;
@@ -54,7 +51,11 @@ export class TracksAround {
     const now = Math.floor(t);
     const stretch = { from: Math.max(0, now - REACH_S - lead_s), to: now + REACH_S };
     try {
-      const tracks = await this.patiently(stretch, asking.signal);
+      const tracks = await patiently(
+        () => this.ask(stretch.from, stretch.to, asking.signal),
+        asking.signal,
+        this.againMs,
+      );
       if (asking.signal.aborted) return;
       this.tracks = tracks;
       this.loaded = stretch;
@@ -62,18 +63,6 @@ export class TracksAround {
       if (!asking.signal.aborted) this.trouble = cause instanceof Error ? cause.message : String(cause);
     } finally {
       if (this.asking === asking) this.busy = false;
-    }
-  }
-
-  private async patiently({ from, to }: { from: number; to: number }, signal: AbortSignal): Promise<Track[]> {
-    for (;;) {
-      try {
-        return await this.ask(from, to, signal);
-      } catch (cause) {
-        if (signal.aborted || !(cause instanceof RequestFailed && cause.status === TOO_SLOW)) throw cause;
-      }
-      await new Promise((resolve) => setTimeout(resolve, this.againMs));
-      signal.throwIfAborted();
     }
   }
 }

@@ -92,15 +92,22 @@ export async function tracks(
 }
 
 /** What holds a node's fix at `t` (Unix s; null: the newest), with everything known now. */
-export async function evidence(id: string, node: string, t: number | null): Promise<Evidence> {
+export async function evidence(
+  id: string,
+  node: string,
+  t: number | null,
+  signal: AbortSignal,
+): Promise<Evidence> {
   const params = { path: { incident: id }, query: { node, ...(t === null ? {} : { t }) } };
-  return (await answered(client.GET("/api/v1/incidents/{incident}/evidence", { params }))) as Evidence;
+  return (await answered(
+    client.GET("/api/v1/incidents/{incident}/evidence", { params, signal }),
+  )) as Evidence;
 }
 
 /** What would make a node's newest position surer. */
-export async function advice(id: string, node: string): Promise<Advice> {
+export async function advice(id: string, node: string, signal: AbortSignal): Promise<Advice> {
   const params = { path: { incident: id }, query: { node } };
-  return (await answered(client.GET("/api/v1/incidents/{incident}/advice", { params }))) as Advice;
+  return (await answered(client.GET("/api/v1/incidents/{incident}/advice", { params, signal }))) as Advice;
 }
 
 /**
