@@ -25,6 +25,9 @@ GROWS_AFTER_S = 1.0
 MOVED_SHOWN_S = 600.0
 NOTICES_SHOWN = 8
 
+WHY_NOWHERE = {"too_late", "no_origin"}
+"""Codes of notices that tell why nothing that somebody reports places him, who may have no line either."""
+
 Floors = Sequence[tuple[int, str, float]]
 """Number, spoken name and height of the floor (m) of each storey."""
 
@@ -193,7 +196,7 @@ def _notices_shown(record: PictureRecord) -> list[RecordNotice]:
     return [
         notice
         for at, notice in enumerate(record.notices)
-        if at >= first or (notice.code == "too_late" and notice.node not in placed)
+        if at >= first or (notice.code in WHY_NOWHERE and notice.node not in placed)
     ]
 
 

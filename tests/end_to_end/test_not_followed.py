@@ -51,6 +51,29 @@ def test_whose_readings_are_not_understood_or_come_too_late_is_told_of(
     assert second.startswith("r2: 1 reading so far came more than 60 s late")
 
 
+def test_whose_fixes_are_latitudes_is_told_of_until_the_incident_has_an_origin(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = one_inside(post)
+    commander.opens(server.url, incident)
+
+    def at_the_door(t: float, node: str) -> dict[str, object]:
+        return {"kind": "position", "t": t, "node": node, "wgs84": [48.0, 11.0, 500.0]}
+
+    def told() -> bool:
+        now = time.time()
+        heard(post, incident, step(now, "walker", [0.1, 0, 0]), at_the_door(now, "r3"))
+        return bool(commander.not_followed)
+
+    eventually(told, every_s=0.5)
+    assert commander.not_followed[0].startswith("r3: a WGS84 fix cannot be fused: the incident has no origin")
+    assert set(commander.board()) == {"WALKER"}
+
+    origin = {"lat": 48.0, "lon": 11.0, "hae": 500.0}
+    assert post.http.patch(f"/incidents/{incident}", json={"origin": origin}).status_code == 200
+    eventually(lambda: "r3" in commander.board() and commander.not_followed == [])
+
+
 def test_who_was_followed_until_the_clock_jumped_is_told_of_with_the_dot_that_is_old(
     server: Server, post: Post, commander: Commander
 ) -> None:

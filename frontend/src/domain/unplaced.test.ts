@@ -41,6 +41,16 @@ test("who is nowhere because the readings come too late is told so, whether the 
   expect([...whyUnplaced(picture).keys()]).toEqual(["ff1", "ff9"]);
 });
 
+test("whose fixes are latitudes is told of where the incident has no origin, a UAV as well as who has no line yet", () => {
+  const text = "the incident has no origin in WGS84";
+  const notices = ["uav-1", "ff2", "ff3"].map((node) => ({ code: "no_origin", t: NOON, text, node }));
+  const uav = aNode({ node: "uav-1", role: "uav", callsign: "UAV 1", position_m: null, covariance_m2: null });
+  const picture = pictureOf(aFrame([uav, aNode({ node: "ff3" })], { notices }));
+  expect(unplaced(picture, NOON)).toEqual([
+    { names: ["UAV 1", "ff2"], why: text, gateway: null, heard_s: null },
+  ]);
+});
+
 test("it is said aloud with the reason, and without ages, which count up", () => {
   const picture = pictureOf(aFrame([], { set_aside: [anAside("ff1")] }));
   expect(unplacedInWords(unplaced(picture, NOON))).toBe(`Heard, not followed: ff1: ${AHEAD}.`);

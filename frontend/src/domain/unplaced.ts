@@ -1,5 +1,6 @@
 /** Who is heard and not followed on the map, and why: nobody looks for a dot that cannot come. */
 import type { Picture } from "./picture";
+import { isMoving } from "./staleness";
 import type { FrameMessage, FrameNode } from "./types";
 import { nameInText, nameOf } from "./words";
 
@@ -12,6 +13,10 @@ export interface Unplaced {
   readonly heard_s: number | null;
 }
 
+/** What the estimator says of readings none of which places anybody: they come too late, or the incident has no
+ * origin from which their latitudes count. */
+const NOT_PLACING: ReadonlySet<string> = new Set(["too_late", "no_origin"]);
+
 const NAMELESS = "a unit that does not say its name";
 
 /** One entry for each reason, with all whom it keeps from the map. */
@@ -21,7 +26,7 @@ export function unplaced(picture: Picture | null, now: number): Unplaced[] {
     const shown = callsign || name;
     put(found, shown === "" ? NAMELESS : shown, text, gateway, Math.max(0, now - t));
   }
-  for (const { node, text } of tooLate(picture)) {
+  for (const { node, text } of notPlacing(picture)) {
     const known = picture?.nodes.get(node)?.state;
     put(found, known ? nameOf(known) : node, text, null, null);
   }
@@ -30,7 +35,7 @@ export function unplaced(picture: Picture | null, now: number): Unplaced[] {
 
 /** Why a node is not followed, of those that have a line on the board. */
 export function whyUnplaced(picture: Picture | null): Map<string, string> {
-  const why = new Map(tooLate(picture).map(({ node, text }): [string, string] => [node, text]));
+  const why = new Map(notPlacing(picture).map(({ node, text }): [string, string] => [node, text]));
   for (const { name, text } of picture?.setAside ?? []) why.set(name, text);
   return why;
 }
@@ -42,17 +47,17 @@ export function unplacedInWords(all: readonly Unplaced[]): string {
     .join(" ");
 }
 
-/** What is told of readings that come too late, of whom they keep from the map. */
-function tooLate(picture: Picture | null): { node: string; text: string }[] {
+/** What is told of readings that place nobody, of whom they keep from the map. */
+function notPlacing(picture: Picture | null): { node: string; text: string }[] {
   return (picture?.notices ?? []).flatMap(({ code, node, text }: FrameMessage["notices"][number]) => {
-    if (code !== "too_late" || node === null) return [];
+    if (!NOT_PLACING.has(code) || node === null) return [];
     const known = picture?.nodes.get(node)?.state;
     return known === undefined || isNowhere(known) ? [{ node, text }] : [];
   });
 }
 
 function isNowhere({ role, status, position_m }: FrameNode): boolean {
-  return role === "responder" && status !== "retired" && !position_m;
+  return isMoving(role) && status !== "retired" && !position_m;
 }
 
 function put(

@@ -147,8 +147,9 @@ def test_alarms_and_notices_are_shown(incident: Make) -> None:
     assert [notice.node for notice in frame.notices] == [f"ff{i}" for i in range(12, 20)]
 
 
-def test_why_somebody_has_no_place_is_told_however_much_else_is_noticed(incident: Make) -> None:
-    late = RecordNotice(code="too_late", t=1.0, text="late", node="ff1")
+@pytest.mark.parametrize("code", ["too_late", "no_origin"])
+def test_why_somebody_has_no_place_is_told_however_much_else_is_noticed(incident: Make, code: str) -> None:
+    late = RecordNotice(code=code, t=1.0, text="late", node="ff1")
     others = tuple(RecordNotice(code="echo", t=2.0, text="echo", node=f"b{at}") for at in range(20))
 
     def told(*nodes: RecordNode) -> set[str | None]:
