@@ -154,3 +154,18 @@ def test_in_a_recorded_incident_what_was_named_under_way_is_marked_where_it_stoo
     eventually(lambda: commander.was_set == ["Set: storeys"])
     commander.scrubs_to(t + 4)
     eventually(lambda: commander.event == "Set: storeys")
+
+
+def test_what_is_named_while_a_recorded_incident_is_looked_at_is_marked_without_opening_it_again(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
+    heard(post, incident, step(T0 + 4, "walker", [1, 0, 0]))
+    recorded(post, incident, T0 + 3)
+    commander.opens(server.url, incident)
+    assert post.http.patch(f"/incidents/{incident}", json={"levels": LEVELS}).status_code == 200
+    heard(post, incident, step(T0 + 8, "walker", [1, 0, 0]))
+    eventually(lambda: commander.was_set == ["Set: storeys"], within_s=30)
+    commander.scrubs_to(T0 + 4)
+    eventually(lambda: commander.event == "Set: storeys")

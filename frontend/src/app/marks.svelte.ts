@@ -9,6 +9,8 @@ import { loggedPages, newestToldBy } from "../sources/log";
 export class Marks {
   list = $state.raw<readonly Mark[]>([]);
   private reading = new AbortController();
+  /** The past of the incident is read, or has been. */
+  private readsPast = false;
   /** Breadcrumbs that have been in the picture. */
   private readonly lying = new Set<string>();
   /** The newest epoch told up to the log entries after which something was set (Unix s). */
@@ -19,6 +21,7 @@ export class Marks {
 
   clear(): void {
     this.reading.abort();
+    this.readsPast = false;
     this.lying.clear();
     this.whenTold.clear();
     this.list = [];
@@ -36,25 +39,21 @@ export class Marks {
   /** The incident is as it was told of now. */
   told(incident: Incident): void {
     this.list = withSetMarks(this.list, setMarks(incident, this.whenTold));
+    // Of one that has just been opened the present comes first.
+    if (this.readsPast) this.findTimes(incident, this.reading.signal).catch(quietly);
   }
 
   /** Reads the past out of the log of an incident; what cannot be read has no marks. */
   async readPast(incident: Incident, lastSeq: number): Promise<void> {
-    const { id, clock, stretches } = incident;
+    const { id, clock } = incident;
     this.reading.abort();
     const reading = new AbortController();
     this.reading = reading;
+    this.readsPast = true;
     const alarms: LoggedAlarm[] = [];
     const drops: LoggedDrop[] = [];
     try {
-      if (clock === "recorded") {
-        for (const { after_seq } of stretches.slice(1)) {
-          const t = await newestToldBy(id, after_seq, reading.signal);
-          if (reading.signal.aborted) return;
-          if (t !== undefined) this.whenTold.set(after_seq, t);
-        }
-        this.told(incident);
-      }
+      await this.findTimes(incident, reading.signal);
       for await (const page of loggedPages(id, lastSeq, clock, reading.signal)) {
         if (reading.signal.aborted) return;
         alarms.push(...page.flatMap((line) => line.alarms));
@@ -62,11 +61,23 @@ export class Marks {
         this.drops(drops.filter(({ dropped }) => dropped));
       }
     } catch {
-      // The log is not the way by which a commander hears of a lost connection.
+      quietly();
     }
     if (reading.signal.aborted) return;
     this.alarms(raisedOf(alarms));
     this.drops(dropsOf(drops));
+  }
+
+  /** Finds in the log when something was set, where readings are the clock, and marks it there. */
+  private async findTimes(incident: Incident, signal: AbortSignal): Promise<void> {
+    if (incident.clock !== "recorded") return;
+    for (const { after_seq } of incident.stretches.slice(1)) {
+      if (this.whenTold.has(after_seq)) continue;
+      const t = await newestToldBy(incident.id, after_seq, signal);
+      if (signal.aborted) return;
+      if (t !== undefined) this.whenTold.set(after_seq, t);
+    }
+    this.list = withSetMarks(this.list, setMarks(incident, this.whenTold));
   }
 
   private alarms(raised: readonly FrameAlarm[]): void {
@@ -77,3 +88,6 @@ export class Marks {
     this.list = withDropMarks(this.list, dropped, this.name);
   }
 }
+
+/** The log is not the way by which a commander hears of a lost connection. */
+function quietly(): void {}
