@@ -118,3 +118,25 @@ test("in a crowd that nobody could follow lines to, whoever must be labelled is,
   for (const box of boxes)
     expect([...others, ...all.map(markOf)].some((one) => overlap(box, one))).toBe(false);
 });
+
+const NAME = { x: 430, y: 290, width: 50, height: 14 };
+
+test("a label that looks for its place leaves the name of a breadcrumb free, where there is room beside it", () => {
+  const all = [wants("ff1", 400, 300)];
+  const spot = labelPlaces(all, all.map(markOf), [], MAP, NOWHERE_BEFORE, [NAME]).get("ff1");
+  expect(spot?.kind).toBe("whole");
+  expect(overlap(spot?.box ?? NAME, NAME)).toBe(false);
+});
+
+test("who walks past a breadcrumb keeps the label where it is: one that jumps about is not read", () => {
+  const all = [wants("ff1", 400, 300)];
+  const before = labelPlaces(all, all.map(markOf), [], MAP, NOWHERE_BEFORE);
+  expect(labelPlaces(all, all.map(markOf), [], MAP, before, [NAME])).toEqual(before);
+});
+
+test("a label is not given up for a name: somebody matters more than what he dropped", () => {
+  const all = [wants("ff1", 400, 300)];
+  const everywhere = { x: 0, y: 0, ...MAP };
+  const spot = labelPlaces(all, all.map(markOf), [], MAP, NOWHERE_BEFORE, [everywhere]).get("ff1");
+  expect(spot?.kind).toBe("whole");
+});

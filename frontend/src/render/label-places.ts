@@ -48,13 +48,15 @@ const CELL_PX = 64;
 /**
  * Find a place for each label for which there is one.
  *
- * A label keeps its place among those of its kind while that is free: one that jumps about is not read.
+ * A label keeps its place among those of its kind while that is free: one that jumps about is not read. One that
+ * looks for another place takes the first that hides nothing at all, where there is one.
  *
  * @param wanted those that matter most first.
  * @param marks what no label may cover.
  * @param covered what lies over the map: no label goes there.
  * @param map its size.
  * @param before the places in the picture before this one.
+ * @param shunned what a label had better not cover either.
  */
 export function labelPlaces(
   wanted: readonly Wanted[],
@@ -62,10 +64,12 @@ export function labelPlaces(
   covered: readonly Box[],
   map: Size,
   before: ReadonlyMap<string, Spot>,
+  shunned: readonly Box[] = [],
 ): Map<string, Spot> {
   const found = new Map<string, Spot>();
   const [everything, over] = [new Occupied([...marks, ...covered]), new Occupied(covered)];
   const written = new Occupied(covered);
+  const better = new Occupied(shunned);
   const free = (places: readonly Spot[], occupied: Occupied) =>
     places.find(({ box }) => inside(box, map) && occupied.leaves(box));
   const clear = ({ line }: Spot) => line.every((part) => written.leaves(part));
@@ -75,11 +79,11 @@ export function labelPlaces(
   );
   for (const label of wanted) {
     const last = before.get(label.node);
-    const pick = (places: readonly Spot[]) =>
-      free(
-        [...places.filter(({ kind, index }) => kind === last?.kind && index === last.index), ...places],
-        everything,
-      );
+    const pick = (places: readonly Spot[]) => {
+      const room = places.filter(({ box }) => inside(box, map) && everything.leaves(box));
+      const kept = room.find(({ kind, index }) => kind === last?.kind && index === last.index);
+      return kept ?? room.find(({ box }) => better.leaves(box)) ?? room[0];
+    };
     const whole = beside("whole", label);
     let spot = pick(whole) ?? pick(beside("short", label));
     if (spot === undefined && (label.always || led.get(label.rank))) {
@@ -183,6 +187,7 @@ function cellsOf({ x, y, width, height }: Box): number[] {
   return cells;
 }
 
-function overlap(a: Box, b: Box): boolean {
+/** Whether two boxes have a part in common. */
+export function overlap(a: Box, b: Box): boolean {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }

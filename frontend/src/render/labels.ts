@@ -7,6 +7,7 @@ import { isNarrow } from "../domain/view";
 import { labelPlaces, nearest, type Spot, type Wanted } from "./label-places";
 import type { Box, Layer, Placed, Scene } from "./layer";
 import { markReach, movers, RADIUS, rankOf } from "./place";
+import { radioBoxes } from "./radio-names";
 import { scaleBox } from "./scale";
 
 /** Of text of the usual size. */
@@ -35,30 +36,11 @@ function widthOf(context: CanvasRenderingContext2D, text: string): number {
 
 export const labels: Layer = {
   draw(context, scene) {
+    const drawn = laidOut(context, scene);
     context.save();
-    context.font = `600 ${NAME_PX * scene.view.text}px system-ui, sans-serif`;
+    context.font = fontOf(scene);
     context.textAlign = "left";
     context.textBaseline = "top";
-    const everybody = movers(scene);
-    const marks: Box[] = everybody.flatMap(({ x, y, elsewhere }) =>
-      elsewhere ? [] : [{ x: x - RADIUS, y: y - RADIUS, width: 2 * RADIUS, height: 2 * RADIUS }],
-    );
-    const labelled = everybody
-      .reverse()
-      .filter((place) => urgent(scene, place) || (!place.elsewhere && place.node.status !== "retired"))
-      .map((place) => labelOf(context, scene, place));
-    const spots = labelPlaces(
-      labelled.map(({ wanted }) => wanted),
-      marks,
-      [...scene.covered, scaleBox(scene.view)],
-      scene.view,
-      before,
-    );
-    before = spots;
-    const drawn = labelled.flatMap((label) => {
-      const spot = spots.get(label.place.node.node);
-      return spot === undefined ? [] : [{ ...label, spot }];
-    });
     for (const { place, spot } of drawn) if (spot.kind === "led") lead(context, scene, place, spot.box);
     for (const { place, spot, whole, short } of drawn) {
       write(context, scene, place, spot.kind === "whole" ? whole : [short], spot.box);
@@ -66,6 +48,49 @@ export const labels: Layer = {
     context.restore();
   },
 };
+
+/** What the labels of a scene take up. */
+export function labelBoxes(context: CanvasRenderingContext2D, scene: Scene): Box[] {
+  return laidOut(context, scene).map(({ spot }) => spot.box);
+}
+
+const laidOutOf = new WeakMap<Scene, readonly (Label & { readonly spot: Spot })[]>();
+
+/** The labels that have a place, worked out once for a scene. */
+function laidOut(context: CanvasRenderingContext2D, scene: Scene) {
+  const known = laidOutOf.get(scene);
+  if (known !== undefined) return known;
+  context.save();
+  context.font = fontOf(scene);
+  const everybody = movers(scene);
+  const marks: Box[] = everybody.flatMap(({ x, y, elsewhere }) =>
+    elsewhere ? [] : [{ x: x - RADIUS, y: y - RADIUS, width: 2 * RADIUS, height: 2 * RADIUS }],
+  );
+  const labelled = everybody
+    .reverse()
+    .filter((place) => urgent(scene, place) || (!place.elsewhere && place.node.status !== "retired"))
+    .map((place) => labelOf(context, scene, place));
+  context.restore();
+  const spots = labelPlaces(
+    labelled.map(({ wanted }) => wanted),
+    marks,
+    [...scene.covered, scaleBox(scene.view)],
+    scene.view,
+    before,
+    radioBoxes(scene),
+  );
+  before = spots;
+  const laid = labelled.flatMap((label) => {
+    const spot = spots.get(label.place.node.node);
+    return spot === undefined ? [] : [{ ...label, spot }];
+  });
+  laidOutOf.set(scene, laid);
+  return laid;
+}
+
+function fontOf(scene: Scene): string {
+  return `600 ${NAME_PX * scene.view.text}px system-ui, sans-serif`;
+}
 
 interface Label {
   readonly place: Placed;

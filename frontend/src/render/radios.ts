@@ -1,38 +1,10 @@
 /** What stands: base, anchors, beacons, breadcrumbs, each in its own shape. */
 import { statusAt } from "../domain/staleness";
+import { overlap } from "./label-places";
+import { labelBoxes } from "./labels";
 import type { Layer, Placed, Scene } from "./layer";
 import { radios as standing } from "./place";
-
-/** From this scale on breadcrumbs carry their names (pixels per metre). */
-const NAMED_FROM = 14;
-const NEAR_ENOUGH_TO_NAME = 40;
-/** Width of a character of a name, about (px). */
-const CHARACTER_PX = 7;
-/** Names nearer to each other are read as one (px). */
-const APART_PX = 8;
-const LINE_PX = 14;
-
-interface Name {
-  readonly text: string;
-  /** Its middle (CSS pixels). */
-  readonly x: number;
-  readonly y: number;
-}
-
-/** The names that have room: those that would lie over one before them are left out. The marks tell more than a smear. */
-export function readable(names: readonly Name[], size = 1): Name[] {
-  const kept: Name[] = [];
-  const half = ({ text }: Name) => (text.length * CHARACTER_PX * size) / 2;
-  for (const name of names) {
-    const over = kept.some(
-      (other) =>
-        Math.abs(other.y - name.y) < LINE_PX * size &&
-        Math.abs(other.x - name.x) < half(other) + half(name) + APART_PX,
-    );
-    if (!over) kept.push(name);
-  }
-  return kept;
-}
+import { boxOf, radioNames } from "./radio-names";
 
 export const radios: Layer = {
   draw(context, scene) {
@@ -42,26 +14,20 @@ export const radios: Layer = {
       context.globalAlpha = place.elsewhere ? 0.18 : place.node.status === "retired" ? 0.35 : 1;
       mark(context, scene, place);
     }
-    if (scene.view.pixelsPerMetre >= NAMED_FROM || all.length <= NEAR_ENOUGH_TO_NAME) {
-      context.font = `${12 * scene.view.text}px system-ui, sans-serif`;
-      context.textAlign = "center";
-      context.textBaseline = "top";
-      context.globalAlpha = 1;
-      context.fillStyle = scene.palette.inkSoft;
-      const names = all.flatMap(({ node, x, y, elsewhere }) =>
-        elsewhere ? [] : [{ text: words(scene, node), x, y: y + 9 }],
-      );
-      for (const { text, x, y } of readable(names, scene.view.text)) context.fillText(text, x, y);
+    // Before the responders, whose marks lie on top; a name that a label would be written over is a smear.
+    const labelled = labelBoxes(context, scene);
+    context.font = `${12 * scene.view.text}px system-ui, sans-serif`;
+    context.textAlign = "center";
+    context.textBaseline = "top";
+    context.globalAlpha = 1;
+    context.fillStyle = scene.palette.inkSoft;
+    for (const name of radioNames(scene)) {
+      const box = boxOf(name, scene.view.text);
+      if (!labelled.some((label) => overlap(label, box))) context.fillText(name.text, name.x, name.y);
     }
     context.restore();
   },
 };
-
-function words(scene: Scene, node: Placed["node"]): string {
-  if (node.status === "retired") return `${node.node} gone`;
-  if (node.moved) return `${node.node} MOVED`;
-  return statusAt(node, scene.now, scene.limits) === "live" ? node.node : `${node.node} silent`;
-}
 
 function mark(context: CanvasRenderingContext2D, scene: Scene, { node, x, y }: Placed): void {
   const status = statusAt(node, scene.now, scene.limits);
