@@ -209,6 +209,15 @@ class LayoutSeen:
         return -top
 
     @property
+    def map_answers_under_the_storeys(self) -> bool:
+        """Whether a finger well under the last storey button is on the map."""
+        last = self.page.get_by_test_id("storeys").get_by_role("button").last.bounding_box()
+        assert last is not None
+        under = [last["x"] + last["width"] / 2, last["y"] + last["height"] + 40]
+        found = self.page.evaluate("([x, y]) => document.elementFromPoint(x, y).tagName", under)
+        return bool(found == "CANVAS")
+
+    @property
     def map_height(self) -> float:
         """How high the map is (CSS pixels)."""
         box = self.page.get_by_test_id("map").bounding_box()

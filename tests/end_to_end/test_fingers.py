@@ -15,11 +15,10 @@ T0 = 1_763_712_345.0
 
 @pytest.fixture
 def at_a_tablet(browser: Browser, server: Server, post: Post) -> Iterator[Commander]:
-    """A commander whose screen takes touches, with two crews ten metres apart on it."""
+    """A commander whose screen takes touches, with two crews five metres apart on it."""
     incident = post.open_incident()
-    heard(
-        post, incident, base(T0), responder(T0, "ff1", "A", [-5, 0, 0]), responder(T0, "ff2", "B", [5, 0, 0])
-    )
+    crews = responder(T0, "ff1", "A", [-2.5, 0, 0]), responder(T0, "ff2", "B", [2.5, 0, 0])
+    heard(post, incident, base(T0), *crews)
     context = browser.new_context(viewport={"width": 1024, "height": 768}, has_touch=True)
     commander = Commander(context.new_page())
     commander.opens(server.url, incident)

@@ -6,7 +6,7 @@ import pytest
 
 from tests.end_to_end.canvas import FIRST_CREW, SECOND_CREW, THIRD_CREW
 from tests.end_to_end.commander import Commander
-from tests.end_to_end.scene import Reading, alarm, base, heard, responder, step
+from tests.end_to_end.scene import LEVELS, Reading, alarm, base, heard, responder, step
 from tests.running import Post, Server, eventually
 
 T0 = 1_763_712_345.0
@@ -227,3 +227,17 @@ def test_the_label_of_one_responder_never_hides_the_mark_of_another(
     commander.opens(server.url, incident)
     eventually(lambda: commander.banners)
     assert commander.settled_mark(SECOND_CREW).count > 100
+
+
+def test_under_the_storey_buttons_the_map_answers_a_finger_and_people_have_its_whole_width(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident(levels=LEVELS)
+    crews = responder(T0, "ff1", "A", [0, 0, 0]), responder(T0, "ff2", "B", [60, 0, 0])
+    heard(post, incident, base(T0), *crews)
+    commander.sits_at(1024, 768)
+    commander.opens(server.url, incident)
+    first, second = commander.settled_mark(FIRST_CREW), commander.settled_mark(SECOND_CREW)
+    # Of a map of 704 px, of which the buttons in its corners leave 294 between them.
+    assert second.x - first.x > 450
+    assert commander.map_answers_under_the_storeys

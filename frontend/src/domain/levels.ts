@@ -76,7 +76,7 @@ export function levelButtons(
 const BUTTON_PX = 50;
 const NOT_THEIRS_PX = 70;
 /** More columns than these would cover the people on the map. */
-const COLUMNS = 2;
+export const STOREY_COLUMNS = 2;
 /** On a phone they lie in a row over the head of the map. */
 const ON_A_PHONE = 6;
 const PHONE_PX = 520;
@@ -84,7 +84,7 @@ const PHONE_PX = 520;
 /** How many storey buttons have room on a map of that size (CSS pixels). */
 export function storeysThatFit({ width, height }: { width: number; height: number }): number {
   if (width <= PHONE_PX) return ON_A_PHONE;
-  return COLUMNS * Math.max(1, Math.floor((height - NOT_THEIRS_PX) / BUTTON_PX));
+  return STOREY_COLUMNS * Math.max(1, Math.floor((height - NOT_THEIRS_PX) / BUTTON_PX));
 }
 
 /**

@@ -94,6 +94,34 @@ describe("fitting", () => {
   });
 });
 
+describe("fitting beside the buttons on the map", () => {
+  const tablet = views.resize(views.FIRST_VIEW, 704, 604);
+  const usual = views.marginsOf(tablet);
+  const choices = views.narrowerMargins(tablet, usual);
+  const best = (bounds: views.Bounds, hides: (fit: views.View) => boolean) =>
+    views.fittedFreely(tablet, bounds, choices, (seen) => !hides(seen));
+  const house: views.Bounds = { west_m: 0, east_m: 60, south_m: 0, north_m: 20 };
+
+  test("a long house is shown almost twice as large where nobody in it lies under a button", () => {
+    const large = best(house, () => false).pixelsPerMetre;
+    expect(large / views.fitted(tablet, house, usual).pixelsPerMetre).toBeGreaterThan(1.6);
+  });
+
+  test("where one would lie under the storeys, the map begins beside them, and ends where it may", () => {
+    const seen = best(house, (shown) => views.toScreen(shown, 0, 20)[0] < 190);
+    expect(views.toScreen(seen, 0, 20)[0]).toBeGreaterThanOrEqual(190);
+    expect(views.toScreen(seen, 60, 20)[0]).toBeCloseTo(704 - 130);
+  });
+
+  test("where nobody could be kept clear of them, the usual margins hold", () => {
+    expect(best(house, () => true)).toEqual(views.fitted(tablet, house, usual));
+  });
+
+  test("a phone has its buttons above and below, and no narrower margins", () => {
+    expect(views.narrowerMargins(views.resize(views.FIRST_VIEW, 390, 380), usual)).toEqual([usual]);
+  });
+});
+
 test("the map moves to a selected node only if something covers it, and then to the middle of what is free", () => {
   expect(views.bringIntoView(view, 10, -5, margins)).toBe(view);
   const moved = views.bringIntoView(view, 500, 0, margins);

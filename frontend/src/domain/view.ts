@@ -30,6 +30,8 @@ export interface Margins {
 
 /** For the storey buttons, the controls and the labels. */
 const FULL_MARGINS: Margins = { left: 200, right: 210, top: 60, bottom: 70 };
+/** Where no button lies beside who is on the map, room is kept for the labels alone (CSS pixels). */
+const LABELS_BESIDE = { left: 70, right: 130 };
 /** On a map less wide than this the margins are narrower too. */
 const WIDE_ENOUGH_PX = 700;
 /** On a phone the buttons lie over the head and the foot of the map, and nothing at its sides. */
@@ -46,6 +48,16 @@ export function marginsOf({ width, text }: Pick<View, "width" | "text">): Margin
   if (isNarrow({ width, text })) return NARROW_MARGINS;
   const share = Math.min(1, width / WIDE_ENOUGH_PX);
   return { ...FULL_MARGINS, left: FULL_MARGINS.left * share, right: FULL_MARGINS.right * share };
+}
+
+/** The margins that a fit may do with, where nobody comes to lie under a button: `usual`, and narrower at the sides. */
+export function narrowerMargins(view: Pick<View, "width" | "text">, usual: Margins): readonly Margins[] {
+  if (isNarrow(view)) return [usual];
+  const [left, right] = [
+    Math.min(usual.left, LABELS_BESIDE.left),
+    Math.min(usual.right, LABELS_BESIDE.right),
+  ];
+  return [{ ...usual, left, right }, { ...usual, left }, { ...usual, right }, usual];
 }
 
 export const MIN_PIXELS_PER_METRE = 0.02;
@@ -138,11 +150,31 @@ export function fitted(view: View, bounds: Bounds, margins: Margins): View {
   return pan(centred, (margins.left - margins.right) / 2, (margins.top - margins.bottom) / 2);
 }
 
+/** The largest of the fits within one of the margins that is `free`; where none is, that within the last of them. */
+export function fittedFreely(
+  view: View,
+  bounds: Bounds,
+  margins: readonly Margins[],
+  free: (fit: View) => boolean,
+): View {
+  const fits = margins.map((room) => fitted(view, bounds, room));
+  return fits
+    .filter(free)
+    .reduce((most, fit) => (fit.pixelsPerMetre > most.pixelsPerMetre ? fit : most), fits.at(-1) ?? view);
+}
+
 /**
  * Whether the bounds lie inside the margins and fill a fair part of them: then a fit can wait.
- * A fit to more than must be seen, `whole`, is not taken for one that is too wide.
+ * A fit to more than must be seen, `whole`, is not taken for one that is too wide: one is that shows much less
+ * than `best`.
  */
-export function fitsWell(view: View, bounds: Bounds, margins: Margins, whole: Bounds = bounds): boolean {
+export function fitsWell(
+  view: View,
+  bounds: Bounds,
+  margins: Margins,
+  whole: Bounds = bounds,
+  best: View = fitted(view, whole, margins),
+): boolean {
   const [left, bottom] = toScreen(view, bounds.west_m, bounds.south_m);
   const [right, top] = toScreen(view, bounds.east_m, bounds.north_m);
   const inside =
@@ -150,7 +182,6 @@ export function fitsWell(view: View, bounds: Bounds, margins: Margins, whole: Bo
     right <= view.width - margins.right / 2 &&
     top >= margins.top / 2 &&
     bottom <= view.height - margins.bottom / 2;
-  const best = fitted(view, whole, margins);
   return inside && view.pixelsPerMetre > best.pixelsPerMetre * 0.6;
 }
 
