@@ -144,23 +144,50 @@ def turned_along(was: Array, now: Array, pairs: Indices, pivot_m: Array) -> Arra
 def change_pairs(matrix: Array, vector: Array, pairs: Indices, changes: Array) -> None:
     """AᵀLA and Aᵀb in the place of L and b, where A changes pairs of numbers among themselves.
 
+    L is gone through once, by rows as it lies in memory: by columns it takes several times as long.
+
     Args:
         matrix: L, n × n or larger, changed.
         vector: b, n, changed.
-        pairs: which numbers, m × 2.
+        pairs: which numbers, m × 2; none is in two of them.
         changes: the block of A of each pair, m × 2 × 2.
     """
+    paired = np.zeros(len(vector), dtype=np.bool_)
     for i in range(len(pairs)):
         e, n = pairs[i]
+        paired[e] = paired[n] = True
         ee, en, ne, nn = changes[i, 0, 0], changes[i, 0, 1], changes[i, 1, 0], changes[i, 1, 1]
-        for k in range(len(vector)):
-            one, other = matrix[k, e], matrix[k, n]
-            matrix[k, e], matrix[k, n] = one * ee + other * ne, one * en + other * nn
+        for k in (e, n):
+            change_along(matrix, k, pairs, changes, 0, i + 1)
         for k in range(len(vector)):
             one, other = matrix[e, k], matrix[n, k]
             matrix[e, k], matrix[n, k] = one * ee + other * ne, one * en + other * nn
+        for k in (e, n):
+            change_along(matrix, k, pairs, changes, i + 1, len(pairs))
         one, other = vector[e], vector[n]
         vector[e], vector[n] = one * ee + other * ne, one * en + other * nn
+    for k in range(len(vector)):
+        if not paired[k]:
+            change_along(matrix, k, pairs, changes, 0, len(pairs))
+
+
+@njit(cache=True, forceinline=True)
+def change_along(matrix: Array, row: int, pairs: Indices, changes: Array, first: int, last: int) -> None:
+    """Change pairs of numbers among themselves in one row of L.
+
+    Args:
+        matrix: L, n × n or larger, changed.
+        row: which one.
+        pairs: see `change_pairs`.
+        changes: see `change_pairs`.
+        first: the first of the pairs to change.
+        last: the one to stop before.
+    """
+    for i in range(first, last):
+        e, n = pairs[i]
+        one, other = matrix[row, e], matrix[row, n]
+        matrix[row, e] = one * changes[i, 0, 0] + other * changes[i, 1, 0]
+        matrix[row, n] = one * changes[i, 0, 1] + other * changes[i, 1, 1]
 
 
 @njit(cache=True)

@@ -80,6 +80,19 @@ def test_what_knew_no_turn_of_where_places_were_knows_none_of_where_they_are(see
     assert float(np.linalg.eigvalsh(matrix)[0]) > -1e-9 * float(np.abs(matrix).max())
 
 
+@given(seeds)
+def test_pairs_are_changed_as_by_the_whole_matrix_of_the_change(seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    half, vector = chance.normal(0.0, 1.0, (NUMBERS, NUMBERS)), chance.normal(0.0, 1.0, NUMBERS)
+    matrix, changes, whole = half @ half.T, chance.normal(0.0, 1.0, (len(PLACES), 2, 2)), np.eye(NUMBERS)
+    for pair, change in zip(PLACES, changes, strict=True):
+        whole[np.ix_(pair, pair)] = change
+    expected = whole.T @ matrix @ whole, whole.T @ vector
+    change_pairs(matrix, vector, PLACES, changes)
+    assert matrix == pytest.approx(expected[0])
+    assert vector == pytest.approx(expected[1])
+
+
 def test_a_place_that_has_jumped_is_left_as_it_was_said() -> None:
     was, now = np.array([10.0, 0.0]), np.array([0.0, 10.0])
     assert turned_along(was, now, np.array([[0, 1]]), BASE_M)[0] == pytest.approx(np.eye(2))
