@@ -22,8 +22,9 @@ from estimator.fusion.rows.arcs import fallen_back
 from estimator.fusion.rows.rows import FIELDS, ONE
 from estimator.fusion.update import hold
 from estimator.graph.dense import factorise, inverse
-from estimator.graph.kernels import carry, eliminate, selected_inverse, substitute, take_off
+from estimator.graph.kernels import eliminate, selected_inverse, substitute, take_off
 from estimator.graph.kirchhoff import Kirchhoff
+from estimator.graph.right_sides import carry, carry_back
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
 from estimator.graph.scatter import add_motion, add_part, couple, localise, scatter_rows
 from estimator.graph.triangular import inverted
@@ -122,6 +123,7 @@ def _warm_chain() -> None:
     take_off(0, k, wide, corner.copy(), rest.copy())
     for right in (np.zeros((k, n, 2))[:, :, ::2], np.zeros((k, n, 2), order="F")):
         carry(diagonal, link, wide, right, np.zeros((s, right.shape[2])))
+        carry_back(diagonal, link, wide, right, np.zeros((s, right.shape[2])))
     substitute(diagonal, link, wide, rest, np.zeros((k, n)))
     add_part(slab, corner, rest, corner, rest)
     selected_inverse(diagonal, link, wide, corner, np.zeros((k, 1, n, n)), np.zeros((k - 1, 1, n, n)))

@@ -200,34 +200,6 @@ def substitute(diagonal: Array, link: Array, wide: Array, fixed: Array, steps: A
                 steps[j, c] += diagonal[j, r, c] * rights[j, r]
 
 
-@njit(cache=True)
-def carry(diagonal: Array, link: Array, wide: Array, y: Array, rest: Array) -> None:
-    """Right sides to the end after `eliminate`: `y` of keyframes, k × n × c; `rest`, of the border, s × c."""
-    length, width, count = y.shape
-    size, back = link.shape[2], np.empty((width, count))
-    for j in range(length):
-        for r in range(width - 1, -1, -1):
-            y[j, r] *= diagonal[j, r, r]
-            for c in range(r):
-                for i in range(count):
-                    y[j, r, i] += diagonal[j, r, c] * y[j, c, i]
-            for s in range(len(rest)):
-                for i in range(count):
-                    rest[s, i] -= wide[j, r, s] * y[j, r, i]
-        if j == length - 1:
-            break
-        back[:] = 0.0
-        for r in range(width):
-            for c in range(r + 1):
-                for i in range(count):
-                    back[c, i] += diagonal[j, r, c] * y[j, r, i]
-        for r in range(width):
-            block = r // size
-            for c in range(size):
-                for i in range(count):
-                    y[j + 1, r, i] -= link[j, block, r - block * size, c] * back[block * size + c, i]
-
-
 @njit(cache=True, nogil=True)
 def selected_inverse(
     diagonal: Array, link: Array, wide: Array, border_covariance: Array, found: Array, ahead: Array

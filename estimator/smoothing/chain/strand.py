@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.graph.dense import Array, mended
-from estimator.graph.kernels import Integers, carry, eliminate, selected_inverse, substitute, take_off
+from estimator.graph.kernels import Integers, eliminate, selected_inverse, substitute, take_off
+from estimator.graph.right_sides import carry, carry_back
 from estimator.graph.scatter import add_motion, scatter_rows
 from estimator.smoothing.chain.groups import Group, Placed
 from estimator.smoothing.keyframes.walks import Motion
@@ -155,14 +156,8 @@ class Strand:
 
     def back(self, y: Array, fixed: Array) -> None:
         """Answers in the place of what `forth` left in `y`, for those of the border, s × c."""
-        length, width, count = y.shape
-        blocks, size = self.link.shape[1:3]
-        for j in range(length - 1 if width else -1, -1, -1):
-            ahead = y[j] - self.border[j] @ fixed
-            if j < length - 1:
-                after = self.link[j].transpose(0, 2, 1) @ y[j + 1].reshape(blocks, size, count)
-                ahead -= self.diagonal[j] @ after.reshape(width, count)
-            y[j] = self.diagonal[j].T @ ahead
+        if y.shape[1]:
+            carry_back(self.diagonal, self.link, self.wide, y, fixed)
 
     def covariances(self, border: Array) -> tuple[Array, Array]:
         """Of each walk at each keyframe, k × walks × b × b, and with itself at the next one.
