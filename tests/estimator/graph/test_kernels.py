@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from estimator.graph.dense import Array
 from estimator.graph.kernels import eliminate, take_off
 
 BORDER = 4
@@ -10,6 +11,21 @@ BORDER = 4
 
 @pytest.mark.parametrize("walks", [1, 2])
 def test_border_is_left_with_the_schur_complement(walks: int) -> None:
+    whole, gradient, (diagonal, link, wide) = a_chain(walks)
+    length, size = len(diagonal), len(diagonal) * diagonal.shape[1]
+    corner, rest = whole[size:, size:].copy(), gradient[size:].copy()
+
+    assert eliminate(0, length, diagonal, link, wide) == length
+    eased = take_off(0, 1, wide, corner, rest) + take_off(1, length, wide, corner, rest)
+
+    told = np.linalg.solve(whole[:size, :size], np.column_stack([whole[:size, size:], gradient[:size]]))
+    np.testing.assert_allclose(corner, whole[size:, size:] - whole[size:, :size] @ told[:, :-1], rtol=1e-9)
+    np.testing.assert_allclose(rest, gradient[size:] - whole[size:, :size] @ told[:, -1], rtol=1e-9)
+    assert eased == pytest.approx(gradient[:size] @ told[:, -1])
+
+
+def a_chain(walks: int) -> tuple[Array, Array, tuple[Array, Array, Array]]:
+    """Equations of three keyframes and a border: whole, their right side, and in the blocks of a chain."""
     rng, length, width = np.random.default_rng(walks), 3, 6 * walks
     size = length * width
     root = rng.normal(size=(size + BORDER, 2 * size))
@@ -25,15 +41,7 @@ def test_border_is_left_with_the_schur_complement(walks: int) -> None:
     diagonal = np.array([whole[at, at] for at in own])
     link = np.array([[whole[own[k + 1], own[k]][at, at] for at in own_blocks(walks)] for k in range(2)])
     wide = np.array([np.column_stack([whole[at, size:], gradient[at]]) for at in own])
-    corner, rest = whole[size:, size:].copy(), gradient[size:].copy()
-
-    assert eliminate(0, length, diagonal, link, wide) == length
-    eased = take_off(0, 1, wide, corner, rest) + take_off(1, length, wide, corner, rest)
-
-    told = np.linalg.solve(whole[:size, :size], np.column_stack([whole[:size, size:], gradient[:size]]))
-    np.testing.assert_allclose(corner, whole[size:, size:] - whole[size:, :size] @ told[:, :-1], rtol=1e-9)
-    np.testing.assert_allclose(rest, gradient[size:] - whole[size:, :size] @ told[:, -1], rtol=1e-9)
-    assert eased == pytest.approx(gradient[:size] @ told[:, -1])
+    return whole, gradient, (diagonal, link, wide)
 
 
 def own_blocks(walks: int) -> list[slice]:
