@@ -2,56 +2,55 @@
 
 import numpy as np
 
-from estimator.fusion.entering.modes import Sought, costs_of, find_modes, short_costs
+from estimator.fusion.entering.modes import UndecidedNode, costs_of, find_modes, short_costs
 from estimator.fusion.learned.gyros import prior_sigma_radps
-from estimator.fusion.learned.links import NEW
+from estimator.fusion.learned.link_correlation import NEW
 from estimator.fusion.learned.noise import single_sigma
-from estimator.fusion.learned.rival import full, gone_on
+from estimator.fusion.learned.rival import full, predicted
 from estimator.fusion.memory.ledger import COLUMNS
-from estimator.fusion.motion.free import free_motion
+from estimator.fusion.motion.constant_velocity import free_motion
+from estimator.fusion.motion.dead_reckoning import walk
+from estimator.fusion.motion.heading_arcs import swung_m2
+from estimator.fusion.motion.recent_places import TrailEnd, offset, turned_m
 from estimator.fusion.motion.silence import gone_m2, unheard_m2, went_on
-from estimator.fusion.motion.swings import swung_m2
-from estimator.fusion.motion.units import walk
-from estimator.fusion.motion.way import End, offset, turned_m
 from estimator.fusion.readings.crossings import crossings_in
 from estimator.fusion.readings.echoes import tell as tell_echoes
 from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.report import shown, widen
-from estimator.fusion.rows import followed
-from estimator.fusion.rows.arcs import fallen_back
+from estimator.fusion.rows import rival_kernels
+from estimator.fusion.rows.range_curvature import arc_error
 from estimator.fusion.rows.rows import FIELDS, ONE
-from estimator.fusion.update import hold
+from estimator.fusion.update import ask_and_take_in
+from estimator.graph.assembly import add_motion, add_part, couple, localise, scatter_rows
+from estimator.graph.chain_kernels import eliminate, selected_inverse, substitute, take_off
 from estimator.graph.dense import factorise, inverse
-from estimator.graph.kernels import eliminate, selected_inverse, substitute, take_off
+from estimator.graph.gauge import Turning, change_pairs, pivot, turn_pairs, turned_along, turning
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.right_sides import carry, carry_back
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
-from estimator.graph.scatter import add_motion, add_part, couple, localise, scatter_rows
 from estimator.graph.triangular import inverted
-from estimator.graph.turning import Turning, change_pairs, pivot, turn_pairs, turned_along, turning
 from estimator.graph.variable import Variable
-from estimator.inertial.advancing import advance
+from estimator.inertial.after_gaps import face_on, find_standstill
+from estimator.inertial.after_gaps import level_backwards as place_boot
 from estimator.inertial.boot import Boot
-from estimator.inertial.clock import Clock, hears
-from estimator.inertial.loose import tell
-from estimator.inertial.repeating import sift, unwatched
-from estimator.inertial.seeking import face_on, standstill
-from estimator.inertial.seeking import place as place_boot
+from estimator.inertial.free_navigation import add_doubt
+from estimator.inertial.sample_rate import Clock, hears
+from estimator.inertial.stuck_sensor import drop_stuck_samples, unwatched
+from estimator.inertial.zupt_aided import advance
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
-from estimator.smoothing.changes.descended import Ranged, descended
-from estimator.smoothing.changes.moved import ask
+from estimator.smoothing.changes.moved_nodes import test_place
+from estimator.smoothing.changes.track_fit import RangedTrack, fit_track
+from estimator.smoothing.keyframes.displacement_sums import Way, ways_of
 from estimator.smoothing.keyframes.ends import Ground, Nodes, Table, place_ends
 from estimator.smoothing.keyframes.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
-from estimator.smoothing.keyframes.ways import Way, ways_of
-from estimator.smoothing.learning.learn import noise_scores
-from estimator.smoothing.learning.scores import PROBES, follow_on, probe, through
-from estimator.smoothing.learning.slips import gains, unsure
-from estimator.smoothing.problem.turned import moved_from, turn_between
-from estimator.smoothing.readings.arranged import scattered, sigmas
+from estimator.smoothing.learning.delay_scores import PROBES, follow_on, probe, through
+from estimator.smoothing.learning.unit_noise import noise_scores
+from estimator.smoothing.learning.wrong_steps import gains, unsure
+from estimator.smoothing.problem.gauge_turn import moved_from, turn_between
 from estimator.smoothing.readings.curvature import add_bends
-from estimator.smoothing.readings.linear import (
+from estimator.smoothing.readings.linearisation import (
     ANY,
     Readings,
     add_unsure,
@@ -61,8 +60,9 @@ from estimator.smoothing.readings.linear import (
     stretch,
 )
 from estimator.smoothing.readings.obstructed import excess
-from estimator.smoothing.readings.placed import Told, placed
-from estimator.smoothing.readings.rarer import once_a_second
+from estimator.smoothing.readings.stacked import scattered, sigmas
+from estimator.smoothing.readings.thinning import once_a_second
+from estimator.smoothing.readings.window_readings import LedgerRows, window_readings
 
 
 def warm_up() -> None:
@@ -79,12 +79,12 @@ def warm_up() -> None:
     boot, rests = Boot.new(0.0), np.zeros((60, 3)) + np.array([0.0, 0.0, 9.8])
     taken = advance(boot, rests, np.zeros((60, 3)), 0.01)
     advance(boot, rests[taken:], np.zeros((60, 3))[taken:], 0.01)
-    tell(boot, 0.5)
+    add_doubt(boot, 0.5)
     face_on(boot)
     again, felt = boot.anew(), np.hstack([rests, np.zeros((60, 3))])
-    place_boot(again, felt, standstill(again, felt, 0.01), 0.01)
+    place_boot(again, felt, find_standstill(again, felt, 0.01), 0.01)
     hears(Clock.new(100.0)._replace(counted=1), 1.0, 100.0, overlaps=False)
-    sift(unwatched(), np.zeros((0, 6)), np.zeros((2, 6)), 0, 0.01)
+    drop_stuck_samples(unwatched(), np.zeros((0, 6)), np.zeros((2, 6)), 0, 0.01)
     predict_bearing(place, place, one)
     wrap(one)
     for noise in (strided, strided.copy()):
@@ -95,7 +95,7 @@ def warm_up() -> None:
         # Of one reading alone the columns of a table lie as those of an array do.
         total_cost(np.zeros(0, dtype=np.int64), one, one, *noise)
     prior_cost(one, np.zeros(1, dtype=np.intp), one, one)
-    find_modes(Sought("range", place, one, one, 0.0, 1.0, np.zeros(2), np.eye(2)))
+    find_modes(UndecidedNode("range", place, one, one, 0.0, 1.0, np.zeros(2), np.eye(2)))
 
 
 def _warm_chain() -> None:
@@ -137,7 +137,7 @@ def _warm_chain() -> None:
         Nodes(slab, slab, slab, place), np.arange(2.0), np.zeros((2, 1)), pair, ways_of([0], [way])
     )
     heard, read, laid = (np.zeros((1, len(COLUMNS[name]))) for name in ("pairs", "singles", "drops"))
-    found = placed(Told(heard, read, laid), 0.0, ground, pair, no, slab)
+    found = window_readings(LedgerRows(heard, read, laid), 0.0, ground, pair, no, slab)
     rows = found.rows
     readings = Readings(slab, one, one, pair, end, end, slab, one, slab, end, end, end, slab)
     residuals(readings, x)
@@ -153,9 +153,13 @@ def _warm_chain() -> None:
     through(np.zeros((1, 2)), n, n, columns, slab, np.zeros((1, ANY)), one, nowhere, nowhere)
     probe(np.zeros((n, PROBES)), n, n, columns, slab, np.zeros((1, ANY)), one)
     follow_on(slab, one)
-    ask(slab, heard, 0, 0, one, one, 0.0)
-    descended(
-        Ranged(place[:, :2].copy(), one, one, one, place), place[:, :2].copy(), True, np.zeros(3), np.eye(3)
+    test_place(slab, heard, 0, 0, one, one, 0.0)
+    fit_track(
+        RangedTrack(place[:, :2].copy(), one, one, one, place),
+        place[:, :2].copy(),
+        True,
+        np.zeros(3),
+        np.eye(3),
     )
     scattered(place, rows, slab, no)
     sigmas(rows.nominal, rows.nominal, rows)
@@ -178,7 +182,7 @@ def _warm_filter() -> None:
     shown(np.zeros(1, dtype=np.intp), graph.reference, inverse(factorise(graph.information)))
     inverted(graph.storage()[0], np.eye(3))
     swung_m2(np.zeros((1, 2, 1)), np.ones(1))
-    fallen_back(np.ones(1))
+    arc_error(np.ones(1))
     turned_m((0.0, 0.0, 0.0))
     unheard_m2(1.0, 0.0)
     gone_m2(1.0, 1.0, 1.0, 0.0)
@@ -189,8 +193,8 @@ def _warm_filter() -> None:
     table = np.full((1, FIELDS), 0.5)
     table[0, :2] = ONE, 0.0
     newest = np.array([NEW])
-    told, sums, nobody = np.empty((1, 3)), np.zeros((1, 6)), followed.units_from([], [])
-    hold(
+    told, sums, nobody = np.empty((1, 3)), np.zeros((1, 6)), rival_kernels.units_from([], [])
+    ask_and_take_in(
         table,
         np.zeros(1),
         nobody,
@@ -207,11 +211,11 @@ def _warm_filter() -> None:
     graph.add_node(Variable("unit", ""), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     step = np.array([[0.0, 3.0, *(1.0,) * 10]])
     walk(step, *graph.storage(), graph.size, np.empty(6, dtype=np.intp), np.empty((6, 6)))
-    ends, marks = np.zeros((1, len(End._fields))), np.zeros((2, 4))
+    ends, marks = np.zeros((1, len(TrailEnd._fields))), np.zeros((2, 4))
     offset(ends[0], marks, graph.reference, 0.0)
     technology = np.zeros((1, len(Technology._fields)))
     pair_rows(np.zeros((1, PAIR)), technology, ends, marks, newest, graph.reference)
-    gone_on(np.zeros(4), full(np.ones(10)), 1.0)
+    predicted(np.zeros(4), full(np.ones(10)), 1.0)
     widen(graph.covariance(), 0, 1.0)
 
 

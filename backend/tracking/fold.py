@@ -11,7 +11,7 @@ from backend.live.past import SHOWN_WITHIN_S
 from backend.live.record import PictureRecord, RecordNotice
 from backend.log.base import LoggedBatch, RecordedFrame
 from backend.tracking.board import Board
-from backend.tracking.put_back import GoingOn
+from backend.tracking.clock_set_back import GoingOn
 from backend.tracking.recorder import pieces, row_of
 from estimator import trackers
 from estimator.estimate import Relative

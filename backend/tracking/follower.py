@@ -17,11 +17,11 @@ from backend.live.record import PictureRecord
 from backend.log.base import DerivedWriter, LogReader, LogUnreadable, Snapshot
 from backend.tracking.answering import answer
 from backend.tracking.course import Course, Step
+from backend.tracking.fair_turns import for_a_while
 from backend.tracking.fold import IncidentFold
 from backend.tracking.heads import Head
-from backend.tracking.keeping import Keeper
 from backend.tracking.publication import Publication, Publish
-from backend.tracking.turns import for_a_while
+from backend.tracking.storing import Keeper
 
 IDLE_S = 2.0
 """After so long without news the state is stored, and what was folded in a hurry is told without one."""

@@ -1,4 +1,4 @@
-"""Sums over whole logs, too heavy for the web process: a process beside it does them, see `aside.py`."""
+"""Sums over whole logs, too heavy for the web process: one beside it does them, see `sums_process.py`."""
 
 import asyncio
 import multiprocessing
@@ -11,7 +11,10 @@ from contextlib import suppress
 from typing import ParamSpec, TypeVar
 
 from backend.errors import NotFound, TooSlow, Unavailable
-from backend.tracking.aside import (
+from backend.tracking.fold import OtherState
+from backend.tracking.heads import Head
+from backend.tracking.long_sums import Kept
+from backend.tracking.sums_process import (
     Smoothed,
     advice_of_log,
     evidence_of_log,
@@ -20,9 +23,6 @@ from backend.tracking.aside import (
     smooth_log,
     smoothed_of,
 )
-from backend.tracking.fold import OtherState
-from backend.tracking.heads import Head
-from backend.tracking.kept import Kept
 from estimator.estimate import Relative
 from estimator.evidence import Advice, Evidence
 from estimator.warm import warm_up

@@ -73,7 +73,7 @@ class Image(msgspec.Struct, frozen=True, array_like=True):
         return Image(self.cosine, self.sine, self.flip, east, north, self.turned_rad)
 
 
-class Otherwise(msgspec.Struct, frozen=True, array_like=True):
+class Alternative(msgspec.Struct, frozen=True, array_like=True):
     """That somebody may be elsewhere.
 
     Attributes:
@@ -101,7 +101,7 @@ class Otherwise(msgspec.Struct, frozen=True, array_like=True):
         return self.of, self.since_t, self.way
 
 
-def doubt_m2(others: Sequence[Otherwise], place_m: Array) -> Array:
+def doubt_m2(others: Sequence[Alternative], place_m: Array) -> Array:
     """What it adds to the covariance of a place that somebody may be elsewhere, 3 × 3 (m²).
 
     The second moment about the place that is shown: an ellipse is to hold him wherever he is.
@@ -117,7 +117,7 @@ def doubt_m2(others: Sequence[Otherwise], place_m: Array) -> Array:
     return found
 
 
-def doubt_between_m2(a: Sequence[Otherwise], a_m: Array, b: Sequence[Otherwise], b_m: Array) -> Array:
+def doubt_between_m2(a: Sequence[Alternative], a_m: Array, b: Sequence[Alternative], b_m: Array) -> Array:
     """The same of where one is relative to another: who would be elsewhere together is not apart, 3 × 3 (m²).
 
     Args:

@@ -4,14 +4,14 @@ import numpy as np
 from numba import njit
 
 from estimator.estimate import NodeEstimate, Relative
-from estimator.fusion.entering.apart import apart_m2, elsewhere_m2
 from estimator.fusion.entering.introduce import tuple_of, upper_triangle
+from estimator.fusion.entering.separated_unit import apart_m2, elsewhere_m2
 from estimator.fusion.images import doubt_between_m2
 from estimator.fusion.learned.calibration import doubt
 from estimator.fusion.learned.delays import Suspicion
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.motion.swings import loose_headings, swung_m2
+from estimator.fusion.motion.heading_arcs import loose_headings, swung_m2
 from estimator.graph.dense import Array, Indices
 from estimator.graph.variable import Variable
 from estimator.measurements.bearing import within_pi

@@ -8,20 +8,26 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.entering import again, apart, beginnings, changed, introduce, leaving, retold
+from estimator.fusion.entering import (
+    beginnings,
+    corrections,
+    leaving,
+    reentry,
+    replaced_unit,
+    separated_unit,
+)
 from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.state import AnyHeld, FusionState
-from estimator.fusion.motion.free import move_free
-from estimator.fusion.motion.units import drift_units, was_silent
-from estimator.fusion.motion.way import offset_of
-from estimator.fusion.readings import boots, held
+from estimator.fusion.motion.constant_velocity import move_free
+from estimator.fusion.motion.dead_reckoning import drift_units, was_silent
+from estimator.fusion.readings import absolute, drops, raw_samples
+from estimator.fusion.readings.altimeter_jumps import another as another_altimeter
 from estimator.fusion.readings.clocks import retimed
-from estimator.fusion.readings.copies import once
+from estimator.fusion.readings.copies import without_copies
 from estimator.fusion.readings.crossings import hear
 from estimator.fusion.readings.displacements import move_units, returns
-from estimator.fusion.readings.jumps import another as another_altimeter
 from estimator.fusion.readings.pairs import AnyPair, Pairs
-from estimator.fusion.readings.untold import begun
+from estimator.fusion.readings.unstated_starts import with_starts
 from estimator.fusion.rows.rows import Single, table_of
 from estimator.fusion.update import update
 from estimator.inertial.samples import AnyFolded, Samples
@@ -53,11 +59,11 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     displacements: list[Displacement] = []
     holds: list[AnyHeld] = list(state.waiting)
     retired, returned = list[Retire](), list[Node]()
-    readings = once(state, readings)
+    readings = without_copies(state, readings)
     for reading in readings:
         if state.called and isinstance(reading, (*HELD, Displacement, Samples)):
             for name in names_of(reading):
-                again.come_back(state, name, reading.t)
+                reentry.re_enter(state, name, reading.t)
         if isinstance(reading, HELD):
             holds.append(retimed(reading, state.clocks, state.nodes) if state.clocks else reading)
         elif isinstance(reading, Displacement):
@@ -65,13 +71,13 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         elif isinstance(reading, Node) and any(r.node == reading.node and r.t < reading.t for r in retired):
             returned.append(reading)
         elif isinstance(reading, Node):
-            holds += retold.take(state, reading)
+            holds += corrections.take(state, reading)
         elif isinstance(reading, Retire):
             retired.append(reading)
         elif isinstance(reading, Samples):
-            displacements += boots.displacements_of(state, reading)
+            displacements += raw_samples.displacements_of(state, reading)
     holds += hear(state, [r for r in readings if isinstance(r, Rssi)])
-    displacements = apart.set_aside(state, begun(state, displacements))
+    displacements = separated_unit.set_aside(state, with_starts(state, displacements))
     holds.sort(key=attrgetter("t"))
     late_t, gone_out = until_t - physics.PENDING_S, {r.node for r in retired}
     for name, changed_t in state.announced.items():
@@ -79,7 +85,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         early = [r for r in displacements if r.node == name and r.t <= changed_t]
         displacements = [r for r in displacements if r.node != name or r.t > changed_t]
         _fold(state, early, [], late_t, {name})
-        changed.change(state, name)
+        replaced_unit.change(state, name)
         another_altimeter(state, name, changed_t)
     while back := returns(state, displacements):
         # What was heard of who was silent is not held against where his unit has taken him since.
@@ -94,7 +100,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     for gone in retired:
         leaving.retire(state, gone)
     for reading in returned:
-        retold.take(state, reading)
+        corrections.take(state, reading)
     state.keep_poses()
 
 
@@ -135,7 +141,7 @@ def _begin_at_fixes(state: FusionState, readings: Sequence[AnyHeld]) -> list[Any
         if isinstance(reading, Position):
             node = state.nodes.get(reading.node)
             if node is None or node.mode == "undecided":
-                held.fix(state, reading)
+                absolute.fix(state, reading)
                 continue
         others.append(reading)
     return others
@@ -204,11 +210,15 @@ def _hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single]
     told = pairs.fused_t
     for reading in others:
         if isinstance(reading, (Position, Altitude, Pressure)):
-            found = held.fix(state, reading) if isinstance(reading, Position) else held.height(state, reading)
+            found = (
+                absolute.fix(state, reading)
+                if isinstance(reading, Position)
+                else absolute.height(state, reading)
+            )
             singles.extend(found)
             if found:
                 told[reading.node] = reading.t
-        elif isinstance(reading, Drop) and _drop(state, reading):
+        elif isinstance(reading, Drop) and drops.hold(state, reading):
             told[reading.node] = told[reading.by] = reading.t
     pairs.take(between)
     rows = pairs.enter()
@@ -274,27 +284,3 @@ def _carry(state: FusionState, until: Mapping[str, float]) -> None:
         move_free(state, drifting)
     if silent:
         drift_units(state, silent)
-
-
-def _drop(state: FusionState, reading: Drop) -> bool:
-    """Let a breadcrumb lie where its bearer stands; False where that is not known, or it lies already."""
-    by = state.node_of(reading.by, "responder", reading.t)
-    waits = introduce.waits_for_ranges(state, by, reading.t)
-    if by.mode == "undecided" and by.role in MOVING_ROLES and not waits:
-        introduce.begin_at_base(state, by, reading.t)
-        by = state.nodes[reading.by]
-    if not by.decided or by.apart is not None:
-        text = f"nobody knows where {reading.by} is: {reading.node} cannot be dropped by it"
-        state.say("conflict", reading.t, reading.node, text)
-        state.count("not_fused")
-        return False
-    where = state.place(by)
-    if by.moving:
-        where = where + np.array(offset_of(state, by, reading.t))
-    crumb = state.nodes.get(reading.node)
-    if crumb is not None and crumb.mode == "retired" and crumb.role not in (*MOVING_ROLES, "base"):
-        # It was picked up, and is dropped again.
-        again.begin_anew(state, crumb, crumb.role, reading.t)
-    done = introduce.drop(state, reading.node, by, where, reading.t)
-    state.count("fused" if done else "not_fused")
-    return done

@@ -4,23 +4,31 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
-from estimator.fusion.entering.anew import hear_ranges
+from estimator.fusion.entering.reinitialise import check_ranges
 from estimator.fusion.entering.technologies import REACH
-from estimator.fusion.learned.links import ERROR, KEPT, SAME_PLACE
+from estimator.fusion.learned.link_correlation import ERROR, KEPT, SAME_PLACE
 from estimator.fusion.learned.noise import near_dbm
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.motion.doubted import NOBODY, answer, ask
+from estimator.fusion.motion.unreliable_unit import NOBODY, answer, ask
 from estimator.fusion.readings import echoes
 from estimator.fusion.readings.crossings import learn_reach
-from estimator.fusion.rows.descent import GOOD, INDEFINITE, PREDICTED, RESIDUAL, SOLVED, Found, descend
-from estimator.fusion.rows.followed import Followed, Units, followed
-from estimator.fusion.rows.foreseen import Foreseen, follow, foresee
+from estimator.fusion.rows.gauge_turn import undo_turn
+from estimator.fusion.rows.gauss_newton import (
+    GOOD,
+    INDEFINITE,
+    PREDICTED,
+    RESIDUAL,
+    SOLVED,
+    Minimum,
+    minimise,
+)
+from estimator.fusion.rows.prediction import Prediction, follow, predict
+from estimator.fusion.rows.rival_kernels import RivalUpdate, Units, update_rivals
 from estimator.fusion.rows.rows import CONSTANT, EXTRA, KIND, LINK, NOMINAL, OUTLIERS, SIGMA, SOURCE, VALUE
-from estimator.fusion.rows.unturned import unturn
 from estimator.graph.dense import Array
 from estimator.graph.filter_kernels import scatter
-from estimator.graph.turning import Turning
+from estimator.graph.gauge import Turning
 
 LEVER_M = 20.0
 """A heading's error at the far end of a room's way."""
@@ -32,7 +40,7 @@ Taken = tuple[int, float, bool, int]
 def update(state: FusionState, table: Array, epochs: Array) -> None:
     """Add measurements (operation 1 of paper A, eq. 18) and solve (eq. 4), relinearised where h is curved.
 
-    Before they are added they are asked whose ways foretell them (`motion.doubted`).
+    Before they are added they are asked whose ways foretell them (`motion.unreliable_unit`).
 
     Args:
         state: the fusion; its graph is solved and rests at the new estimate afterwards. Readings that make no
@@ -56,18 +64,18 @@ def update(state: FusionState, table: Array, epochs: Array) -> None:
     # is not to wait.
     if again:
         state.suspected = True
-    hear_ranges(state, table, told[:, GOOD])
+    check_ranges(state, table, told[:, GOOD])
     state.count("outlier", outliers)
     _learn(state, table, told, sums)
 
 
 def _hold(
     state: FusionState, table: Array, epochs: Array, units: Units, told: Array, sums: Array
-) -> tuple[Taken, Followed]:
+) -> tuple[Taken, RivalUpdate]:
     graph = state.graph
     changed, base_m = graph.turning(), np.array(state.base_place()[:2])
     newest = state.links.table
-    return hold(
+    return ask_and_take_in(
         table, epochs, units, *graph.storage(), graph.size, changed, base_m, newest, told, sums, ITERATIONS
     )
 
@@ -81,7 +89,7 @@ def _learn(state: FusionState, table: Array, told: Array, sums: Array) -> None:
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def hold(
+def ask_and_take_in(
     table: Array,
     epochs: Array,
     units: Units,
@@ -95,7 +103,7 @@ def hold(
     told: Array,
     sums: Array,
     iterations: int,
-) -> tuple[Taken, Followed]:
+) -> tuple[Taken, RivalUpdate]:
     """Ask readings of units, then take them in: what is known of them before is worked out once for both.
 
     Args:
@@ -113,8 +121,8 @@ def hold(
         sums: the same.
         iterations: the same.
     """
-    seen = foresee(table, matrix, vector[:n], reference[:n])
-    rivals = followed(table, epochs, units, seen, reference[:n])
+    seen = predict(table, matrix, vector[:n], reference[:n])
+    rivals = update_rivals(table, epochs, units, seen, reference[:n])
     taken = take_in(table, seen, matrix, vector, reference, n, changed, base_m, links, told, sums, iterations)
     return taken, rivals
 
@@ -122,7 +130,7 @@ def hold(
 @njit(cache=True, error_model="numpy", nogil=True)
 def take_in(
     table: Array,
-    seen: Foreseen,
+    seen: Prediction,
     matrix: Array,
     vector: Array,
     reference: Array,
@@ -152,10 +160,10 @@ def take_in(
         iterations: how often to relinearise at most.
 
     Returns:
-        The outcome, see `descent.Found`: unless it is `SOLVED` nothing has been changed; the largest turn of
-        a unit (rad); see `odd`; the number of outliers.
+        The outcome, see `gauss_newton.Minimum`: unless it is `SOLVED` nothing has been changed; the largest
+        turn of a unit (rad); see `outlier_again`; the number of outliers.
     """
-    found = descend(table, seen, iterations)
+    found = minimise(table, seen, iterations)
     if found.outcome != SOLVED:
         return found.outcome, 0.0, False, 0
     x, turned_rad, jacobian = reference[:n].copy(), 0.0, found.jacobian
@@ -165,7 +173,7 @@ def take_in(
         before = reference[:n].copy()
         follow(seen, found.before, before)
         known = matrix, vector[:n], reference[:n]
-        jacobian = unturn(table, seen.columns, found, before, *known, x, changed, base_m)
+        jacobian = undo_turn(table, seen.columns, found, before, *known, x, changed, base_m)
     for row in changed.headings:
         turned_rad = max(turned_rad, abs(x[row] - reference[row]))
     scatter(matrix, vector, seen.columns, jacobian, found.information, found.residual)
@@ -173,12 +181,12 @@ def take_in(
     for r in range(len(table)):
         told[r, RESIDUAL], told[r, PREDICTED] = found.residual[r], found.predicted[r]
         told[r, GOOD] = found.good[r]
-    again = odd(table, found.good, links, found.doubted)
+    again = outlier_again(table, found.good, links, found.doubted)
     return found.outcome, turned_rad, again, tally(table, found, x, links, sums)
 
 
 @njit(cache=True, error_model="numpy")
-def odd(table: Array, good: Array, links: Array, doubted: bool) -> bool:
+def outlier_again(table: Array, good: Array, links: Array, doubted: bool) -> bool:
     """Whether a range is an outlier, and the reading before it on its link was one as well.
 
     Args:
@@ -196,7 +204,7 @@ def odd(table: Array, good: Array, links: Array, doubted: bool) -> bool:
 
 
 @njit(cache=True, error_model="numpy")
-def tally(table: Array, found: Found, x: Array, links: Array, sums: Array) -> int:
+def tally(table: Array, found: Minimum, x: Array, links: Array, sums: Array) -> int:
     """Sum up what readings tell of the noise of their technologies, and count the outliers among them.
 
     Args:
@@ -214,7 +222,7 @@ def tally(table: Array, found: Found, x: Array, links: Array, sums: Array) -> in
         source, link = int(table[r, SOURCE]), int(table[r, LINK])
         if source < 0:
             continue
-        if near(table[r], residual, x):
+        if near_each_other(table[r], residual, x):
             if link >= 0:
                 links[link, ERROR] = np.nan
             continue
@@ -237,7 +245,7 @@ def tally(table: Array, found: Found, x: Array, links: Array, sums: Array) -> in
 
 
 @njit(cache=True, error_model="numpy")
-def near(row: Array, residual: float, x: Array) -> bool:
+def near_each_other(row: Array, residual: float, x: Array) -> bool:
     """Whether a reading is of a power between radios that are thought to be near each other.
 
     The direct path rules there: it tells nothing of how noisy radios are that are farther apart.

@@ -12,8 +12,8 @@ import numpy as np
 
 from estimator.graph.dense import Array, Cholesky, Indices, factorise, inverse, mended, solve
 from estimator.graph.filter_kernels import advance, loosen, scatter
+from estimator.graph.gauge import Turning
 from estimator.graph.triangular import inverted
-from estimator.graph.turning import Turning
 from estimator.graph.variable import DIMENSION, Variable, VariableKind
 
 SMALL = 64

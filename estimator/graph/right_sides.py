@@ -1,4 +1,4 @@
-"""Right sides carried through a chain that `kernels.eliminate` has eliminated, and back, compiled."""
+"""Right sides carried through a chain that `chain_kernels.eliminate` has eliminated, and back, compiled."""
 
 import numpy as np
 from numba import njit

@@ -5,14 +5,14 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from estimator.graph.dense import Array
-from estimator.inertial.stance import BEFORE
+from estimator.inertial.zero_velocity import BEFORE
 
 GRAVITY_MPS2 = 9.80665
 TOLD = 12
 """Numbers gathered while a boot is levelled: samples, forces 3, rates 3, their squares, seconds, and those of
 the rates' second half less those of its first, 3."""
 CLIPPED = 48
-"""Numbers that are remembered of the ends of its sensors' ranges, see `clipping.hidden_by`."""
+"""Numbers that are remembered of the ends of its sensors' ranges, see `saturation.hidden_peak`."""
 ERRORS = 18
 """Place, velocity, attitude, biases and scales of accelerometers, biases of gyros (3 each)."""
 VELOCITY, ATTITUDE, FORCE, SCALE, RATE = 3, 6, 9, 12, 15
@@ -59,7 +59,7 @@ class Boot(NamedTuple):
             to be, and no states.
         free: navigation from where it last rested, held by nothing but rests: its place counts from there.
             What its sensors are off by are states of it.
-        felt: what the last samples were like, see `stance.felt_by`.
+        felt: what the last samples were like, see `zero_velocity.add_sample`.
         told: what is gathered while it is levelled, see `TOLD`; its first number is −1 afterwards.
         known: gravity as the unit feels it (m/s²); what its x axis faced when it last stood (rad); which of
             its axes tells that, the most level one; and that one's direction less the x axis' (rad). By how
@@ -79,7 +79,7 @@ class Boot(NamedTuple):
             their biases are known (rad/s); what the bias of its heading is less sure by than of one that has
             rested at first ((rad/s)²); and how long ago a rest has told it, if that is still to be said
             (s): 8.
-        clipped: what is known of the ends of its sensors' ranges, see `clipping.hidden_by`.
+        clipped: what is known of the ends of its sensors' ranges, see `saturation.hidden_peak`.
     """
 
     held: Strapdown

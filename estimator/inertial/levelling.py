@@ -23,9 +23,9 @@ from estimator.inertial.boot import (
     Boot,
     Strapdown,
 )
-from estimator.inertial.resting import ANEW_RAD2PS2, KNOWN_RADPS, RESTED_RADPS, UNRESTED_RADPS, believed
 from estimator.inertial.rotations import azimuth_rad, level
-from estimator.inertial.strapdown import FORCE_SIGMA_MPS2, SCALE_SIGMA, mend
+from estimator.inertial.strapdown import FORCE_SIGMA_MPS2, SCALE_SIGMA, remove_errors
+from estimator.inertial.zaru import ANEW_RAD2PS2, KNOWN_RADPS, RESTED_RADPS, UNRESTED_RADPS, believed
 
 GRAVITY_OFF_MPS2 = 0.6
 """What a unit at rest may feel more or less of gravity: small accelerometers are off by 0.2 to 0.4 m/s² (20
@@ -167,4 +167,4 @@ def _weigh(boot: Strapdown, force: Array) -> None:
     along = boot.covariance @ row
     variance = np.dot(row, along) + UP_SIGMA_MPS2**2
     boot.covariance[:] -= np.outer(along, along) / variance
-    mend(boot, along * ((pull - GRAVITY_MPS2) / variance))
+    remove_errors(boot, along * ((pull - GRAVITY_MPS2) / variance))

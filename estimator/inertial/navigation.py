@@ -6,7 +6,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from estimator.graph.dense import Array
-from estimator.inertial.advancing import advance
+from estimator.inertial.after_gaps import SOUGHT_S, face_on, find_standstill, level_backwards
 from estimator.inertial.boot import (
     BIAS_RADPS,
     CHANGED,
@@ -18,16 +18,16 @@ from estimator.inertial.boot import (
     TURNED_RAD2,
     Boot,
 )
-from estimator.inertial.bridging import BRIDGED_S, TURNING_S, bridge, turned_by, turned_unseen
-from estimator.inertial.clock import Clock, hears
-from estimator.inertial.crossing import CROSSED_S, cross, edge_of
-from estimator.inertial.led import Led, displacement_of
+from estimator.inertial.displacement import InertialDisplacement, displacement_of
+from estimator.inertial.dropped_samples import BRIDGED_S, TURNING_S, bridge, turned_by, turned_unseen
 from estimator.inertial.levelling import ALIGN_S
-from estimator.inertial.repeating import sift, unwatched
-from estimator.inertial.resting import TOLD_AFTER_S
+from estimator.inertial.plausibility import plausible_displacement
+from estimator.inertial.sample_rate import Clock, hears
 from estimator.inertial.samples import Samples
-from estimator.inertial.seeking import SOUGHT_S, face_on, place, standstill
-from estimator.inertial.telling import told
+from estimator.inertial.short_gaps import CROSSED_S, cross, edge_of
+from estimator.inertial.stuck_sensor import drop_stuck_samples, unwatched
+from estimator.inertial.zaru import TOLD_AFTER_S
+from estimator.inertial.zupt_aided import advance
 from estimator.measurements.imu import RATE_MIN_HZ
 
 EACH_S = 0.5
@@ -59,10 +59,10 @@ class Navigation(NamedTuple):
         unsure_m2: variance of its place by what has been bridged since `told_t` (m²).
         jitter_s2: variance of the epochs that its gateway gives (s²).
         newest: its newest sample, 6 (m/s², rad/s).
-        watch: what has been seen of it, see `repeating.watched`.
+        watch: what has been seen of it, see `stuck_sensor.watched`.
         waiting: its newest samples which may turn out to be no readings, k × 6: they are not in `boot`.
         unplaced: samples since some were missing, m × 6, which wait for a standstill: they are not in `boot`.
-        edge: how it moved before them, if the way over that gap can be told, see `crossing.edge_of`.
+        edge: how it moved before them, if the way over that gap can be told, see `short_gaps.edge_of`.
         begun: when readings begin of which a part was new, and whose last piece is still to come, n (s).
         missing: so many before these are missing, and `boot` has not been told yet.
         stretched_m: by how much its way may be too long or too short in all, for its clock's pace is not
@@ -109,7 +109,7 @@ class Navigated(NamedTuple):
     """
 
     navigation: Navigation
-    displacements: list[Led]
+    displacements: list[InertialDisplacement]
     turned_rad2: float
     text: str | None
     taken: bool = False
@@ -152,7 +152,7 @@ def _navigated(known: Navigation, piece: Samples) -> Navigated:
     counted = known.clock.counted + (len(samples) if overlaps else new)
     known = known._replace(clock=known.clock._replace(counted=counted))
     samples, known, turned, found = _joined(known, piece.node, off_s, step_s, samples)
-    sifted = sift(known.watch, known.waiting, samples, known.missing, step_s)
+    sifted = drop_stuck_samples(known.watch, known.waiting, samples, known.missing, step_s)
     texts, end_t = [sifted.text], known.t + len(samples) * step_s
     known = known._replace(t=known.t - len(known.waiting) * step_s)
     for missing, some in sifted.parts:
@@ -174,7 +174,7 @@ def _timed(known: Navigation, piece: Samples, overlaps: bool) -> Navigation:
 
 def _joined(
     known: Navigation, node: str, off_s: float, step_s: float, samples: Array
-) -> tuple[Array, Navigation, float, list[Led]]:
+) -> tuple[Array, Navigation, float, list[InertialDisplacement]]:
     """Samples that begin `off_s` after the last one ended, put behind it.
 
     A gateway's epochs jitter, and no sample is lost; or some are. What is later than its epochs usually are
@@ -199,15 +199,14 @@ def _joined(
         return samples, known._replace(waiting=known.waiting[:0], edge=edge), turned_rad2, found
     boot = known.boot.copy()
     between, lost_m2, turned_rad2 = bridge(boot, before, samples[0], missing, off_s)
-    known = known._replace(
-        t=known.t + off_s - missing * step_s, unsure_m2=known.unsure_m2 + lost_m2, boot=boot
-    )
+    t = known.t + off_s - missing * step_s
+    known = known._replace(t=t, unsure_m2=known.unsure_m2 + lost_m2, boot=boot)
     return np.vstack([between, samples]), known, turned_rad2, []
 
 
 def _lost(
     known: Navigation, node: str | None, ahead_s: float, gone_s: float
-) -> tuple[Navigation, float, list[Led]]:
+) -> tuple[Navigation, float, list[InertialDisplacement]]:
     """Go on after missing samples, `ahead_s` from where it is; none have told anything for `gone_s`.
 
     Nothing is told of the time up to the gap where there is no `node`: a sensor may have been stuck in it.
@@ -215,11 +214,12 @@ def _lost(
     Returns:
         Where it goes on; the variance of its heading by what is missing (rad²); the displacement up to there.
     """
-    t, boot, found, stretched_m = known.t + ahead_s, known.boot.copy(), list[Led](), known.stretched_m
+    t, boot, stretched_m = known.t + ahead_s, known.boot.copy(), known.stretched_m
+    found: list[InertialDisplacement] = []
     if boot.levelled:
         if node is not None and t - gone_s > known.told_t + JITTER_S:
             unsure = known.unsure_m2, stretched_m, known.clock.sigma
-            found, stretched_m = told(boot, node, (known.told_t, t - gone_s), *unsure)
+            found, stretched_m = plausible_displacement(boot, node, (known.told_t, t - gone_s), *unsure)
             boot.known[TURNED_RAD2] = 0.0
         face_on(boot)
     known = known._replace(t=t, told_t=t, unsure_m2=0.0, missing=0, stretched_m=stretched_m, boot=boot.anew())
@@ -228,7 +228,7 @@ def _lost(
 
 def _sought(
     known: Navigation, node: str, samples: Array, step_s: float
-) -> tuple[list[Led], Navigation, Array] | None:
+) -> tuple[list[InertialDisplacement], Navigation, Array] | None:
     """Place a boot after missing samples, or have it levelled as at first where it does not stand for long.
 
     Returns:
@@ -236,12 +236,12 @@ def _sought(
             nothing tells yet where it is.
     """
     t, samples = known.t - len(known.unplaced) * step_s, np.vstack([known.unplaced, samples])
-    boot, upto, found = known.boot.copy(), standstill(known.boot, samples, step_s), list[Led]()
-    placed = upto > 0 and place(boot, samples, upto, step_s)
+    boot, upto = known.boot.copy(), find_standstill(known.boot, samples, step_s)
+    placed = upto > 0 and level_backwards(boot, samples, upto, step_s)
     if not placed and len(samples) * step_s < SOUGHT_S:
         return None
-    if placed and len(known.edge):
-        found = [cross(boot, node, known.edge, edge_of(t, boot, samples[0]))]
+    crossed = placed and len(known.edge)
+    found = [cross(boot, node, known.edge, edge_of(t, boot, samples[0]))] if crossed else []
     boot = boot if placed else known.boot
     known = known._replace(t=t, told_t=t, unplaced=samples[:0], edge=known.edge[:0], boot=boot)
     return found, known, samples
@@ -249,9 +249,9 @@ def _sought(
 
 def _led(
     known: Navigation, node: str, samples: Array, step_s: float
-) -> tuple[list[Led], Navigation, str | None]:
+) -> tuple[list[InertialDisplacement], Navigation, str | None]:
     """What samples that go on from `known` lead to."""
-    found: list[Led] = []
+    found: list[InertialDisplacement] = []
     if known.boot.sought:
         sought = _sought(known, node, samples, step_s)
         if sought is None:
@@ -281,10 +281,10 @@ def _led(
                 boot.gyros[CHANGED] = boot.known[TURNED_RAD2] = 0.0
             told_t = t if boot.levelled else told_t
         elif t >= told_t + EACH_S - 0.5 * step_s:
-            some, stretched_m = told(boot, node, (told_t, t), unsure_m2, stretched_m, pace_sigma)
-            if some:
-                found += some
-            else:
+            unsure = unsure_m2, stretched_m, pace_sigma
+            some, stretched_m = plausible_displacement(boot, node, (told_t, t), *unsure)
+            found += some
+            if not some:
                 text = "the boot never stood, or its samples are wrong: it is levelled anew"
                 boot = boot.anew()
             told_t, unsure_m2 = t, 0.0

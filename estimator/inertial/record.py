@@ -2,8 +2,8 @@
 
 from estimator.graph.record import ArrayRecord, pack, unpack
 from estimator.inertial.boot import Boot, Strapdown
-from estimator.inertial.clock import Clock
 from estimator.inertial.navigation import Navigation
+from estimator.inertial.sample_rate import Clock
 
 _Plain = tuple[float, float, float, float, float, float]
 _Timed = tuple[float, int, float, float, float]

@@ -35,7 +35,7 @@ ten times that where it warms by 3 K a minute (0.01 to 0.02 °/s a kelvin; data 
 
 
 @njit(cache=True, error_model="numpy")
-def freed(boot: Strapdown, force: Array, rate: Array, found: Array) -> None:
+def without_biases(boot: Strapdown, force: Array, rate: Array, found: Array) -> None:
     """A sample without what its sensors are known to be off by.
 
     Args:
@@ -50,12 +50,12 @@ def freed(boot: Strapdown, force: Array, rate: Array, found: Array) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def carry(boot: Strapdown, sample: Array, gravity_mps2: float, size: int, step_s: float) -> Array:
+def propagate(boot: Strapdown, sample: Array, gravity_mps2: float, size: int, step_s: float) -> Array:
     """Take in a sample.
 
     Args:
         boot: changed in place.
-        sample: specific force (m/s²) and angular rate (rad/s) as `freed` leaves them, 6.
+        sample: specific force (m/s²) and angular rate (rad/s) as `without_biases` leaves them, 6.
         gravity_mps2: as it is felt.
         size: how many of the errors are states: all, or 9, where its sensors are taken for perfect.
         step_s: time from the last sample to this one (s).
@@ -139,7 +139,7 @@ def _spread(
 
 
 @njit(cache=True, error_model="numpy")
-def blow(boot: Strapdown, jerked_m2ps4: float, step_s: float) -> None:
+def doubt_force(boot: Strapdown, jerked_m2ps4: float, step_s: float) -> None:
     """Doubt a velocity by what a force may have been between two samples, where it changes fast.
 
     Args:
@@ -173,7 +173,7 @@ def correct(covariance: Array, error: Array, state: int, value: float, sigma: fl
 
 
 @njit(cache=True, error_model="numpy")
-def mend(boot: Strapdown, error: Array) -> None:
+def remove_errors(boot: Strapdown, error: Array) -> None:
     """Take out errors that have been found, 18."""
     for c in range(3):
         boot.place[c] += error[c]
@@ -184,7 +184,7 @@ def mend(boot: Strapdown, error: Array) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def stand(boot: Strapdown, error: Array, velocity_mps: Array, sigma_mps: float) -> None:
+def zero_velocity_update(boot: Strapdown, error: Array, velocity_mps: Array, sigma_mps: float) -> None:
     """Take in what the velocity of a boot that stands is (ZUPT): the errors of its axes are independent.
 
     Args:

@@ -6,7 +6,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.graph.dense import Array
-from estimator.inertial.led import Led
+from estimator.inertial.displacement import InertialDisplacement
 from estimator.inertial.navigation import navigate
 from estimator.inertial.samples import pieces
 from estimator.measurements.displacement import Displacement
@@ -119,7 +119,7 @@ def displace(state: PaperAState, reading: Displacement) -> None:
 
 def navigate_boot(state: PaperAState, reading: Imu) -> None:
     """What raw samples of a boot make is what a PDR unit would have measured: the paper's are such boots."""
-    node, led, text = _bearer(state, reading.node, reading.t), list[Led](), None
+    node, led, text = _bearer(state, reading.node, reading.t), list[InertialDisplacement](), None
     for piece in pieces(reading):
         done = navigate(state.navigations.get(node.node), piece, 0.0)
         state.navigations[node.node] = done.navigation

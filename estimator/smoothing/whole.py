@@ -9,30 +9,30 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from estimator.fusion.canonical_order import UNTIL_T
 from estimator.fusion.entering.beginnings import decide
 from estimator.fusion.memory.ledger import Ledger
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.order import UNTIL_T
 from estimator.fusion.tick import flush, fold_tick
 from estimator.graph.robust import mixture_cost
 from estimator.inertial.samples import AnyFolded
+from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
 from estimator.smoothing.changes.branch import branch, reunite
-from estimator.smoothing.changes.elsewhere import GAIN, USUAL_COST
-from estimator.smoothing.changes.moved import Moved, moved_nodes
-from estimator.smoothing.extent import spacing_s as usual_s
-from estimator.smoothing.images.climbed import climbed
-from estimator.smoothing.images.otherwise import Mode
-from estimator.smoothing.images.worn import worn
+from estimator.smoothing.changes.moved_nodes import MovedNode, moved_nodes
+from estimator.smoothing.changes.relocation import GAIN, USUAL_COST
+from estimator.smoothing.images.alternatives import Mode
+from estimator.smoothing.images.unit_mounting import likeliest_mounting
+from estimator.smoothing.images.unseen_climbs import find_unseen_climb
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.learning.delays import delays, distrust, doubted
-from estimator.smoothing.learning.learn import learn
-from estimator.smoothing.learning.ranging import learn_ranging
-from estimator.smoothing.learning.slips import withdraw
-from estimator.smoothing.problem.solve import RESTING, Problem
-from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.learning.range_noise import learn_ranging
+from estimator.smoothing.learning.unit_noise import learn
+from estimator.smoothing.learning.wrong_steps import withdraw
+from estimator.smoothing.problem.newton import RESTING, Problem
+from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
-from estimator.smoothing.settle import keep_keyframes, settle
 from estimator.smoothing.window import keep_up, look_again
+from estimator.smoothing.window_extent import spacing_s as usual_s
 
 SLACKS_M = (3.0, 1.0, 0.3, 0.1)
 LEARNING = (1.5, 1.0, 0.5)
@@ -76,7 +76,7 @@ def first_pass(
     return state
 
 
-def solve_whole(state: FusionState) -> tuple[Problem, Solved, list[Mode]]:
+def solve_whole(state: FusionState) -> tuple[Problem, Solution, list[Mode]]:
     """Solve everything, learning on the way how noisy each unit is.
 
     Which breadcrumbs were moved, and then which steps were reported wrongly, is asked again with all that is
@@ -102,10 +102,10 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solved, list[Mode]]:
         state = problem.layout.state
         distrust(state, found)
         problem, solved = _solved(state)
-    return worn(problem, solved, _problem, RESTING)
+    return likeliest_mounting(problem, solved, _problem, RESTING)
 
 
-def _solved(state: FusionState) -> tuple[Problem, Solved]:
+def _solved(state: FusionState) -> tuple[Problem, Solution]:
     """The whole incident solved with those radios believed that the state trusts."""
     withdraw(state)
     other = state.copy()
@@ -131,16 +131,16 @@ def _solved(state: FusionState) -> tuple[Problem, Solved]:
     return problem, problem.solve(solved.x) if problem.rows.shift.any() else solved
 
 
-def _begun(state: FusionState) -> tuple[Problem, Solved]:
+def _begun(state: FusionState) -> tuple[Problem, Solution]:
     """A solution that is at rest enough to be learned from, with all nodes that were moved where they lie."""
     problem = _problem(state)
     solved = problem.solve(problem.layout.start(), SLACKS_M, resting=LEARNING_RESTING)
-    problem, solved = climbed(problem, solved, _problem, LEARNING_RESTING)
-    problem, solved, _ = worn(problem, solved, _problem, LEARNING_RESTING, -math.inf)
+    problem, solved = find_unseen_climb(problem, solved, _problem, LEARNING_RESTING)
+    problem, solved, _ = likeliest_mounting(problem, solved, _problem, LEARNING_RESTING, -math.inf)
     return _settled(problem, solved, LEARNING_RESTING)
 
 
-def _misfit(problem: Problem, solved: Solved, most: int) -> float:
+def _misfit(problem: Problem, solved: Solution, most: int) -> float:
     """How much worse a solution is than one that fits all its readings, in log likelihood.
 
     Each place that it needs is to be worth what it is worth to find one. Readings to a node that it has no
@@ -157,7 +157,7 @@ def _misfit(problem: Problem, solved: Solved, most: int) -> float:
     return float(solved.cost - at_best.sum() + unplaced + GAIN * len(problem.layout.stands))
 
 
-def _settled(problem: Problem, solved: Solved, resting: float) -> tuple[Problem, Solved]:
+def _settled(problem: Problem, solved: Solution, resting: float) -> tuple[Problem, Solution]:
     """The solution with all nodes that were moved where they lie: they begin anew in its state.
 
     Args:
@@ -188,10 +188,10 @@ def _layout(state: FusionState) -> Layout:
     return Layout(state, since_t, spacing_s(state, since_t, state.newest_t))
 
 
-def _begin_elsewhere(problem: Problem, solved: Solved, moves: Sequence[Moved]) -> None:
+def _begin_elsewhere(problem: Problem, solved: Solution, moves: Sequence[MovedNode]) -> None:
     """Nodes that were moved begin anew, beside the others as they are in the solution."""
     layout, state = problem.layout, problem.layout.state
-    settle(state, layout, solved, solved.chain.remainder(layout.length - 1).matrix)
+    hand_back(state, layout, solved, solved.chain.remainder(layout.length - 1).matrix)
     keep_keyframes(state, layout, solved.x)
     for moved in moves:
         branch(state, moved)

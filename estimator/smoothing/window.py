@@ -17,14 +17,29 @@ from estimator.fusion.entering.beginnings import decide
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
-from estimator.smoothing.changes.apart import ask_apart
+from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
 from estimator.smoothing.changes.branch import branch
-from estimator.smoothing.changes.changed import changed_links
-from estimator.smoothing.changes.clocks import set_clocks
-from estimator.smoothing.changes.heard import Hearing
-from estimator.smoothing.changes.moved import moved_nodes
-from estimator.smoothing.changes.twice import tell_twice
-from estimator.smoothing.extent import (
+from estimator.smoothing.changes.changed_links import changed_links
+from estimator.smoothing.changes.clock_delays import set_clocks
+from estimator.smoothing.changes.duplicate_names import tell_duplicate_names
+from estimator.smoothing.changes.moved_nodes import moved_nodes
+from estimator.smoothing.changes.recent_ranges import RecentRanges
+from estimator.smoothing.changes.separated_units import find_separated_units
+from estimator.smoothing.images.alternatives import alternatives_now
+from estimator.smoothing.images.flip_ambiguity import heard_by
+from estimator.smoothing.images.heading_images import reports_from, to_other_sides
+from estimator.smoothing.images.image_starts import SAME_RAD
+from estimator.smoothing.images.likeliest_image import likeliest_image
+from estimator.smoothing.images.solutions import SLACKS_M
+from estimator.smoothing.images.unit_mounting import likeliest_mounting
+from estimator.smoothing.images.unseen_climbs import find_unseen_climb, hinted
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.learning.unit_noise import learn
+from estimator.smoothing.problem.gauge_turn import turned
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.readings.rows import Rows
+from estimator.smoothing.window_extent import (
     LONGEST_S,
     SHORTEST_S,
     STEPS_S,
@@ -34,21 +49,6 @@ from estimator.smoothing.extent import (
     trim,
     work,
 )
-from estimator.smoothing.images.climbed import climbed, hinted
-from estimator.smoothing.images.flips import heard_by
-from estimator.smoothing.images.likeliest import likeliest
-from estimator.smoothing.images.otherwise import otherwise
-from estimator.smoothing.images.solutions import SLACKS_M
-from estimator.smoothing.images.tried import SAME_RAD
-from estimator.smoothing.images.turns import reports_from, to_other_sides
-from estimator.smoothing.images.worn import worn
-from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.learning.learn import learn
-from estimator.smoothing.problem.solve import Problem
-from estimator.smoothing.problem.solved import Solved
-from estimator.smoothing.problem.turned import turned
-from estimator.smoothing.readings.rows import Rows
-from estimator.smoothing.settle import keep_keyframes, settle
 
 PERIOD_S = 8.0
 SOONEST_S = 3.0
@@ -153,20 +153,22 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         begun = _problem(state, since)
         start = _solved(begun, begun.layout.start(), solved_t)
         if hinted(begun, start):
-            begun, start = climbed(begun, start, partial(_problem, since=since), RESTING)
-        begun, start, others = worn(begun, start, partial(_problem, since=since), RESTING, solved_t)
-        layout, judged = begun.layout, likeliest(begun, start)
+            begun, start = find_unseen_climb(begun, start, partial(_problem, since=since), RESTING)
+        begun, start, others = likeliest_mounting(
+            begun, start, partial(_problem, since=since), RESTING, solved_t
+        )
+        layout, judged = begun.layout, likeliest_image(begun, start)
         problem, solved, modes, state.exposed, asked = judged
         trimmed = trim(problem, solved)
         left = solved.chain.remainder(layout.length - 1)
         left = turned(left, layout, problem.pivot_m, problem.first(solved.x), solved.x)
-        settle(state, layout, solved, left.matrix)
-        for name, images in otherwise(layout, solved.x, [*modes, *others]).items():
+        hand_back(state, layout, solved, left.matrix)
+        for name, images in alternatives_now(layout, solved.x, [*modes, *others]).items():
             state.nodes[name] = replace(state.nodes[name], otherwise=images)
         found = learn(state, problem, solved)
-        hearing = Hearing(problem, solved)
-        ask_apart(state, hearing, set_clocks(state, hearing, solved_t))
-        tell_twice(state, hearing)
+        hearing = RecentRanges(problem, solved)
+        find_separated_units(state, hearing, set_clocks(state, hearing, solved_t))
+        tell_duplicate_names(state, hearing)
         _judge_turns(problem, solved, found, asked)
         _tell_changes(state, problem, solved)
     except ValueError as error:
@@ -196,7 +198,7 @@ def _problem(state: FusionState, since: float) -> Problem:
     return Problem(layout, rows, state.prior)
 
 
-def _solved(problem: Problem, x: Array, solved_t: float) -> Solved:
+def _solved(problem: Problem, x: Array, solved_t: float) -> Solution:
     """The solution from where the filter has led to, or from where the units' own ways have.
 
     The filter may have turned the map, of which what was solved before knows nothing: the kink between the
@@ -221,7 +223,7 @@ def _solved(problem: Problem, x: Array, solved_t: float) -> Solved:
     return min(solved, other, key=lambda found: found.cost)
 
 
-def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
+def _tell_changes(state: FusionState, problem: Problem, solved: Solution) -> None:
     """Tell of links that have changed, and of nodes that lie elsewhere, which begin anew."""
     for link in changed_links(problem):
         pair = sorted((link.a, link.b))
@@ -239,7 +241,7 @@ def _tell_changes(state: FusionState, problem: Problem, solved: Solved) -> None:
     decide(state)
 
 
-def _judge_turns(problem: Problem, solved: Solved, found: Array, asked: Collection[int]) -> None:
+def _judge_turns(problem: Problem, solved: Solution, found: Array, asked: Collection[int]) -> None:
     """A unit whose heading has been found is not tried all round any more, unless another one fits again."""
     layout = problem.layout
     for i, walk in enumerate(layout.walks):
@@ -253,7 +255,7 @@ def _judge_turns(problem: Problem, solved: Solved, found: Array, asked: Collecti
             layout.state.keep(replace(node, turned=False))
 
 
-def _in_line(problem: Problem, solved: Solved, index: int) -> bool:
+def _in_line(problem: Problem, solved: Solution, index: int) -> bool:
     """Whether a unit has led along the lines to all radios that tell of it: its sides part later."""
     layout = problem.layout
     walk, way_m = layout.walks[index], layout.states(solved.x, index)[:, :2]

@@ -5,17 +5,17 @@ from collections.abc import Sequence
 
 from estimator.estimate import TrackPoint
 from estimator.evidence import Advice, Evidence
-from estimator.fusion.order import UNTIL_T, place_of
+from estimator.fusion.canonical_order import UNTIL_T, place_of
 from estimator.fusion.tick import names_of
 from estimator.inertial.samples import AnyFolded, in_pieces
 from estimator.measurements import AnyReading
-from estimator.smoothing.images.flips import WHOLE
-from estimator.smoothing.images.likeliest import likeliest
-from estimator.smoothing.images.otherwise import admit
+from estimator.smoothing.images.alternatives import widen
+from estimator.smoothing.images.flip_ambiguity import WHOLE
+from estimator.smoothing.images.likeliest_image import likeliest_image
 from estimator.smoothing.results.advice import advise
-from estimator.smoothing.results.calibrated import doubt_delays, doubt_scales
+from estimator.smoothing.results.calibration_doubt import doubt_delays, doubt_scales
 from estimator.smoothing.results.evidence import explain
-from estimator.smoothing.results.swung import swing
+from estimator.smoothing.results.heading_arcs import swing
 from estimator.smoothing.results.tracks import tracks
 from estimator.smoothing.whole import first_pass, solve_whole
 from estimator.trackers.base import TrackerSettings
@@ -40,13 +40,13 @@ class BatchSmoother:
             return {}
         state = first_pass(ordered, self.settings.origin_wgs84)
         problem, solved, others = solve_whole(state)
-        problem, solved, modes, *_ = likeliest(problem, solved, WHOLE)
+        problem, solved, modes, *_ = likeliest_image(problem, solved, WHOLE)
         solved.chain.solve()
         covariances = solved.chain.covariances()
         swing(problem.layout, solved, covariances)
         doubt_scales(problem.layout, solved, covariances)
         doubt_delays(problem, solved, covariances)
-        admit(problem.layout, solved.x, [*modes, *others], covariances)
+        widen(problem.layout, solved.x, [*modes, *others], covariances)
         return tracks(problem.layout, solved.x, *covariances, lifetimes(ordered))
 
     def evidence(self, readings: Sequence[AnyReading], node: str) -> Evidence | None:
@@ -59,7 +59,7 @@ class BatchSmoother:
         if state.nodes[node].mode == "fixed" or not len(state.ledger.table("begins")):
             return None
         problem, solved, others = solve_whole(state)
-        problem, solved, modes, *_ = likeliest(problem, solved, WHOLE)
+        problem, solved, modes, *_ = likeliest_image(problem, solved, WHOLE)
         return explain(problem.layout.state, problem, solved, [*modes, *others], node)
 
     def advice(self, readings: Sequence[AnyReading], node: str) -> Advice | None:

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from estimator.estimate import Notice
+from estimator.fusion.canonical_order import end_of_tick, place_of
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.order import end_of_tick, place_of
 from estimator.fusion.tick import fold_tick
 from estimator.inertial.samples import AnyFolded
 from estimator.smoothing.window import JOLT_M, keep_up, solve_now

@@ -17,13 +17,13 @@ from typing import Self
 import msgspec
 
 from estimator.estimate import Notice
+from estimator.fusion.canonical_order import tick_of
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.order import tick_of
 from estimator.fusion.tick import names_of
 from estimator.inertial.samples import AnyFolded, Samples, in_pieces
 from estimator.measurements import AnyReading
+from estimator.trackers.catch_up import CatchUp
 from estimator.trackers.chain import Chain, hurried
-from estimator.trackers.hurry import Hurry
 
 LEAPS_KEPT = 8
 
@@ -56,7 +56,7 @@ class LagRecord(msgspec.Struct, frozen=True, array_like=True):
         loose: notices not taken yet that belong to no tick.
         late: see `Lag`.
         leaps: see `Lag`.
-        hurry: see `Hurry`.
+        hurry: see `CatchUp`.
         shown: tick of each state kept of the chain in a hurry; they come after the others.
     """
 
@@ -70,7 +70,7 @@ class LagRecord(msgspec.Struct, frozen=True, array_like=True):
     loose: list[Notice]
     late: dict[str, int] = msgspec.field(default_factory=dict)
     leaps: list[Leap] = msgspec.field(default_factory=list)
-    hurry: Hurry = msgspec.field(default_factory=Hurry)
+    hurry: CatchUp = msgspec.field(default_factory=CatchUp)
     shown: list[int] = msgspec.field(default_factory=list)
 
 
@@ -96,7 +96,7 @@ class Lag:
         self._ticks: list[int] = []
         self._readings: dict[int, list[AnyFolded]] = {}
         self._sure = Chain([(-1, state)])
-        self._hurry = Hurry()
+        self._hurry = CatchUp()
         self._shown: Chain | None = None
         self._notices: dict[int, list[Notice]] = {}
         self._given: dict[int, list[Notice]] = {}

@@ -8,7 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 TOLD_WHERE = """
-from estimator.graph.kernels import eliminate
+from estimator.graph.chain_kernels import eliminate
 print(eliminate._cache.cache_path)
 """
 

@@ -14,11 +14,18 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, Entered, place
-from estimator.fusion.entering.modes import Mode, Sought, costs_of, find_modes, residuals_of, short_costs
+from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, Entry, place
+from estimator.fusion.entering.modes import (
+    Mode,
+    UndecidedNode,
+    costs_of,
+    find_modes,
+    residuals_of,
+    short_costs,
+)
 from estimator.fusion.entering.sightings import Sightings, heard_between, of_node
 from estimator.fusion.entering.technologies import path_loss_states, technology_states
-from estimator.fusion.images import Otherwise, mirrored
+from estimator.fusion.images import Alternative, mirrored
 from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -27,7 +34,7 @@ from estimator.graph.dense import Array
 from estimator.measurements.node import MOVING_ROLES
 
 
-class Chosen(NamedTuple):
+class ChosenMode(NamedTuple):
     """A beginning: the mode, others that fit, whether it is decided, and the height prior behind it (m)."""
 
     mode: Mode
@@ -87,7 +94,7 @@ def _choose(
     extra: Array,
     extra_covariance: Array,
     late: bool,
-) -> Chosen | None:
+) -> ChosenMode | None:
     """Where a node may begin; None where no place fits, or the best one is too unsure to begin at.
 
     Args:
@@ -109,7 +116,7 @@ def _choose(
         sigma = np.hypot(sigma, spread * _db_per_m(seen.value, extra))
     up_sigma = physics.UNDECIDED_MOVING_UP_SIGMA_M if moving else physics.UNDECIDED_UP_SIGMA_M
     kind: Literal["range", "rssi"] = "range" if seen.kind == RANGE else "rssi"
-    sought = Sought(
+    sought = UndecidedNode(
         kind=kind,
         points=seen.points,
         value=seen.value,
@@ -126,10 +133,10 @@ def _choose(
         return None
     outliers = state.learned(state.sources[seen.source]).outliers(physics.NOISES[seen.kind][0])
     others = _others(modes, sought, seen.alike, outliers)
-    return Chosen(modes[0], others, decided and not others, sought.up_m, up_sigma)
+    return ChosenMode(modes[0], others, decided and not others, sought.up_m, up_sigma)
 
 
-def _others(modes: Sequence[Mode], sought: Sought, alike: Array, outliers: float) -> list[Mode]:
+def _others(modes: Sequence[Mode], sought: UndecidedNode, alike: Array, outliers: float) -> list[Mode]:
     """The modes beside the best one that fit about as well, by either cost.
 
     Args:
@@ -149,7 +156,7 @@ def _others(modes: Sequence[Mode], sought: Sought, alike: Array, outliers: float
     return [mode for mode in rest if fits(mode)]
 
 
-def _odd_cost(mode: Mode, sought: Sought, alike: Array, outliers: float) -> float:
+def _odd_cost(mode: Mode, sought: UndecidedNode, alike: Array, outliers: float) -> float:
     """What a mode costs, in log likelihood, where readings far too long, or too weak, are nothing unusual.
 
     By its tails a Cauchy loss would rather believe in a place from which echoes are less too long, though
@@ -198,7 +205,7 @@ def _db_per_m(dbm: Array, path_loss: Array) -> Array:
     return np.asarray(10.0 * exponent / np.log(10.0) / distance_m)
 
 
-def _begin(state: FusionState, node: NodeState, seen: Sightings, chosen: Chosen, since_t: float) -> None:
+def _begin(state: FusionState, node: NodeState, seen: Sightings, chosen: ChosenMode, since_t: float) -> None:
     mode = chosen.mode
     t = float(seen.t.max())
     state.due = True
@@ -215,7 +222,7 @@ def _begin(state: FusionState, node: NodeState, seen: Sightings, chosen: Chosen,
     else:
         reach_m = max(physics.REACH_M, farthest_m)
     centre = (*seen.points[:, :2].mean(axis=0).tolist(), chosen.up_m)
-    entered = Entered(since_t, centre, (reach_m, reach_m, chosen.up_sigma_m))
+    entered = Entry(since_t, centre, (reach_m, reach_m, chosen.up_sigma_m))
     sigma_m = min(mode.sigma_m, reach_m)
     since_t = since_t if state.window_t is None else max(float(np.floor(since_t)), state.window_t)
     place(
@@ -228,7 +235,7 @@ def _begin(state: FusionState, node: NodeState, seen: Sightings, chosen: Chosen,
     )
 
 
-def _otherwise(node: NodeState, chosen: Chosen, since_t: float) -> tuple[Otherwise, ...]:
+def _otherwise(node: NodeState, chosen: ChosenMode, since_t: float) -> tuple[Alternative, ...]:
     """The other modes as images of the best one, in the line that is as far from both."""
     best = chosen.mode
     odds = [float(np.exp(best.cost - mode.cost)) for mode in chosen.others]
@@ -237,5 +244,5 @@ def _otherwise(node: NodeState, chosen: Chosen, since_t: float) -> tuple[Otherwi
         across = (mode.position_m - best.position_m)[:2]
         middle = 0.5 * (mode.position_m + best.position_m)[:2]
         image = mirrored(middle, float(np.arctan2(across[0], -across[1])))
-        found.append(Otherwise(node.index, each / total, image, since_t, image))
+        found.append(Alternative(node.index, each / total, image, since_t, image))
     return tuple(found)

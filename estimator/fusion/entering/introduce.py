@@ -93,7 +93,7 @@ def told_sigma_m(reading: Node) -> float:
     return reading.sigma_m or usual.get(reading.role, physics.SURVEY_SIGMA_M)
 
 
-class Entered(NamedTuple):
+class Entry(NamedTuple):
     """Since when somebody is followed whom readings have found, and what was known of him without them.
 
     Attributes:
@@ -113,7 +113,7 @@ def place(
     t: float,
     position_m: Sequence[float] | Array,
     sigma: Sequence[float],
-    entered: Entered | None = None,
+    entered: Entry | None = None,
 ) -> None:
     """Decide an undecided node's position by a prior: static nodes stay there, the others begin to move.
 
@@ -132,7 +132,7 @@ def place(
     east, north, up = (float(c) for c in position_m)
     if node.role in MOVING_ROLES:
         uav = float(node.role == "uav")
-        since = Entered(t, (east, north, up), floored) if entered is None else entered
+        since = Entry(t, (east, north, up), floored) if entered is None else entered
         state.ledger.add("begins", since.t, node.index, 0.0, uav, *since.position_m, *since.sigma, 0.0, 0.0)
         across, upwards = physics.SPEED_SIGMA_MPS[node.role]
         state.graph.add_node(node.velocity, (0.0, 0.0, 0.0), (across, across, upwards))

@@ -2,11 +2,11 @@
 
 from msgspec.structs import replace
 
-from estimator.fusion.entering.apart import elsewhere_m2
 from estimator.fusion.entering.introduce import tuple_of, upper_triangle
+from estimator.fusion.entering.separated_unit import elsewhere_m2
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.motion.swings import loose_headings, swung_m2
+from estimator.fusion.motion.heading_arcs import loose_headings, swung_m2
 from estimator.measurements.retire import Retire
 
 

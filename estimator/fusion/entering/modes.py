@@ -56,7 +56,7 @@ def short_costs(residual: Array, sigma: Array) -> Array:
     return TOO_SHORT * odd / (1.0 + odd)
 
 
-class Sought(NamedTuple):
+class UndecidedNode(NamedTuple):
     """What is known of an undecided node.
 
     Attributes:
@@ -98,7 +98,7 @@ class Mode(NamedTuple):
     extra: Array
 
 
-def residuals_of(sought: Sought, place_m: Array, extra: Array) -> Array:
+def residuals_of(sought: UndecidedNode, place_m: Array, extra: Array) -> Array:
     """What was measured less what is predicted if the node is at a place, m.
 
     Args:
@@ -113,7 +113,7 @@ def residuals_of(sought: Sought, place_m: Array, extra: Array) -> Array:
     return sought.value - predict_rssi(sought.value, sought.points, there, *states).predicted
 
 
-def find_modes(sought: Sought, unsure_m: float = math.inf) -> list[Mode]:
+def find_modes(sought: UndecidedNode, unsure_m: float = math.inf) -> list[Mode]:
     """Places that fit, best first, each apart from the better ones (`APART_M`, or three sigma).
 
     Levenberg-Marquardt with the Cauchy loss from rings around the first, middle and last place. The states of
@@ -148,7 +148,7 @@ def find_modes(sought: Sought, unsure_m: float = math.inf) -> list[Mode]:
     return modes
 
 
-def _thinned(sought: Sought) -> Sought:
+def _thinned(sought: UndecidedNode) -> UndecidedNode:
     m = len(sought.value)
     if m <= USED_MAX:
         return sought
@@ -156,7 +156,7 @@ def _thinned(sought: Sought) -> Sought:
     return sought._replace(points=sought.points[kept], value=sought.value[kept], sigma=sought.sigma[kept])
 
 
-def _starts(sought: Sought) -> Array:
+def _starts(sought: UndecidedNode) -> Array:
     m = len(sought.value)
     if sought.kind == "range":
         distance = sought.value
@@ -180,9 +180,9 @@ def _descend(
 
     Args:
         ranged: the values are ranges, not powers.
-        points: see `Sought`, m × 3 (m).
-        value: see `Sought`, m.
-        sigma: see `Sought`, m.
+        points: see `UndecidedNode`, m × 3 (m).
+        value: see `UndecidedNode`, m.
+        sigma: see `UndecidedNode`, m.
         starts: position and states of the technology, s × 5.
         prior: information on them, 5 × 5.
         mean: of that prior, 5.

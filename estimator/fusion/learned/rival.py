@@ -15,7 +15,7 @@ from numba import njit
 
 from estimator.fusion import physics
 from estimator.graph.dense import Array
-from estimator.graph.forgotten import ornstein_uhlenbeck
+from estimator.graph.ornstein_uhlenbeck import ornstein_uhlenbeck
 from estimator.graph.robust import FARTHER
 from estimator.measurements.rssi import ANTENNA_M, DB_PER_NEPER, rssi_slope
 
@@ -103,7 +103,7 @@ class Rival(msgspec.Struct, frozen=True, array_like=True):
 
     def place(self, t: float) -> tuple[Array, Array]:
         """Where he is at an epoch `t` (s): east, north, 2 (m), and their covariance, 2 × 2 (m²)."""
-        state, covariance = gone_on(np.array(self.state), full(np.array(self.covariance)), t - self.t)
+        state, covariance = predicted(np.array(self.state), full(np.array(self.covariance)), t - self.t)
         return state[:2], covariance[:2, :2]
 
     def doubt_m2(self, place_m: Array, t: float) -> Array:
@@ -160,8 +160,8 @@ def upper_of(matrix: Array) -> Array:
 
 
 @njit(cache=True)
-def gone_on(x: Array, covariance: Array, since_s: float) -> tuple[Array, Array]:
-    """Place and velocity and their covariance after some time; see `motion.free.free_motion`.
+def predicted(x: Array, covariance: Array, since_s: float) -> tuple[Array, Array]:
+    """Place and velocity and their covariance after some time; see `motion.constant_velocity.free_motion`.
 
     Args:
         x: east, north (m), and both velocities (m/s).
@@ -223,7 +223,7 @@ def follow(x: Array, upper: Array, t: float, told: Array, gains: Array) -> tuple
     """Let a rival follow ranges, one after the other.
 
     Args:
-        x: see `gone_on`.
+        x: see `predicted`.
         upper: its covariance's upper triangle, 10.
         t: their epoch (s).
         told: the ranges, m × `TOLD`, in order of epoch.
@@ -234,7 +234,7 @@ def follow(x: Array, upper: Array, t: float, told: Array, gains: Array) -> tuple
     """
     covariance = full(upper)
     for r in range(len(told)):
-        x, covariance = gone_on(x, covariance, told[r, EPOCH] - t)
+        x, covariance = predicted(x, covariance, told[r, EPOCH] - t)
         t, outliers, noise = told[r, EPOCH], told[r, OUTLIERS], told[r, SIGMA] ** 2
         east, north = x[0] - told[r, EAST], x[1] - told[r, NORTH]
         squared, exponent = east * east + north * north + told[r, UP] ** 2 + 1e-6, told[r, EXPONENT]
@@ -270,14 +270,14 @@ def follow(x: Array, upper: Array, t: float, told: Array, gains: Array) -> tuple
 
 
 @njit(cache=True)
-def drawn(
+def led_by_unit(
     x: Array, covariance: Array, since_s: float, place_m: Array, own: Array, share: float
 ) -> tuple[Array, Array]:
     """A rival some time later, drawn to where its unit leads.
 
     Args:
-        x: see `gone_on`.
-        covariance: see `gone_on`.
+        x: see `predicted`.
+        covariance: see `predicted`.
         since_s: the time (s).
         place_m: where the unit leads: east, north (m).
         own: covariance of that, 2 × 2 (m²).
@@ -286,7 +286,7 @@ def drawn(
     Returns:
         x, and the upper triangle of its covariance, 10.
     """
-    x, covariance = gone_on(x, covariance, since_s)
+    x, covariance = predicted(x, covariance, since_s)
     for r in range(2):
         off = place_m[r] - x[r]
         for c in range(2):

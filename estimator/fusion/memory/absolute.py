@@ -7,12 +7,12 @@ import msgspec
 from msgspec.structs import replace
 
 from estimator.estimate import Vector3
+from estimator.fusion.learned.altimeter_zero import AltimeterZero
 from estimator.fusion.learned.noise import single_sigma
-from estimator.fusion.learned.zeroed import Zeroed
 from estimator.fusion.physics import TICK_S
 
 
-class Alike(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class SharedError(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """How many readings of one kind share an error that stays for some time.
 
     Attributes:
@@ -82,9 +82,9 @@ class Absolute(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     beginning: Beginning = "sure"
     told_m: Vector3 | None = None
-    fixes: Alike = Alike()
-    heights: Alike = Alike()
-    zeroed: Zeroed = Zeroed()
+    fixes: SharedError = SharedError()
+    heights: SharedError = SharedError()
+    zeroed: AltimeterZero = AltimeterZero()
     fits: int = 0
     against: int = 0
     off_m: tuple[float, float] = (0.0, 0.0)

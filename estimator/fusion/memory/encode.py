@@ -4,7 +4,7 @@ import msgspec
 
 from estimator.fusion.learned.calibration import Calibration
 from estimator.fusion.learned.delays import Radio, Suspicion
-from estimator.fusion.learned.links import Links
+from estimator.fusion.learned.link_correlation import Links
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.learned.reach import Reach
 from estimator.fusion.memory.hearing import Listener

@@ -17,7 +17,7 @@ class Crossing(PairReading, tag="crossing", frozen=True):
     """`a` came into the reach of `b`, or left it: `t` is in the middle between two occasions."""
 
 
-class Heard(msgspec.Struct, frozen=True, array_like=True):
+class HeardRadio(msgspec.Struct, frozen=True, array_like=True):
     """One radio as another hears it.
 
     Attributes:
@@ -42,7 +42,7 @@ class Listener(msgspec.Struct, frozen=True, array_like=True):
 
     occasions: tuple[float, ...] = ()
     newest: dict[str, float] = {}
-    radios: dict[str, Heard] = {}
+    radios: dict[str, HeardRadio] = {}
 
     def without(self, radio: str) -> "Listener":
         """The same, as if it had never heard a radio."""
@@ -95,10 +95,10 @@ def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int)
     for other, t in before.items():
         known = radios.get(other)
         if known is None or known.silent >= silent:
-            radios[other] = Heard(t, 1, 0)
+            radios[other] = HeardRadio(t, 1, 0)
         else:
             heard += 1
-            radios[other] = Heard(t, known.heard + 1, 0)
+            radios[other] = HeardRadio(t, known.heard + 1, 0)
     for other, known in listener.radios.items():
         if known.silent >= silent:
             # It is out of reach: of the many that are nothing changes until they are heard again.
@@ -115,5 +115,5 @@ def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int)
             lost -= silent - 1
             if known.heard >= STREAK and len(occasions) >= silent:
                 crossed(known.t, occasions[-silent], other)
-        radios[other] = Heard(known.t, known.heard, 0 if missed == silent and again else missed)
+        radios[other] = HeardRadio(known.t, known.heard, 0 if missed == silent and again else missed)
     return Occasion(Listener(occasions, dict(now), radios), crossings, heard, lost)

@@ -7,13 +7,13 @@ from typing import Literal
 import msgspec
 
 from estimator.estimate import Covariance6, Vector3
-from estimator.fusion.images import Otherwise
-from estimator.fusion.learned.cadence import Cadence
+from estimator.fusion.images import Alternative
 from estimator.fusion.learned.calibration import UNTOLD, Told
+from estimator.fusion.learned.report_period import Cadence
 from estimator.fusion.learned.rival import Rival
-from estimator.fusion.learned.standing import Standing
+from estimator.fusion.learned.zaru import Standing
 from estimator.fusion.memory.absolute import Absolute
-from estimator.fusion.memory.apart import Apart
+from estimator.fusion.memory.separated_unit import SeparatedUnit
 from estimator.graph.variable import Variable
 from estimator.measurements.node import Role
 
@@ -45,7 +45,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         frame_rad: how the frame of its unit is turned against the one that ψ counts from (rad).
         apart: its unit is not where its radio is.
         joined_t: when its unit was where its radio is again (s).
-        worn: how its unit is taken to be worn, see `entering.worn.Worn`.
+        worn: how its unit is taken to be worn, see `entering.unit_mounting.Mounting`.
         first_heading_rad: heading that its unit reported first, in the unit's frame.
         unit_heading_rad: newest heading that its unit reported, in the unit's frame.
         speed_mps: horizontal speed by its newest displacement.
@@ -96,12 +96,12 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     walk_factors: tuple[float, float] = (1.0, 1.0)
     turned: bool = False
     bias_told: Told = UNTOLD
-    otherwise: tuple[Otherwise, ...] = ()
+    otherwise: tuple[Alternative, ...] = ()
     device: str | None = None
     changed: tuple[float, float | None] | None = None
     frame_rad: float = 0.0
     rival: Rival | None = None
-    apart: Apart | None = None
+    apart: SeparatedUnit | None = None
     joined_t: float = -math.inf
     worn: tuple[bool, float] = (False, 0.0)
     whole_t: float = math.inf

@@ -11,7 +11,7 @@ from estimator.fusion import physics
 from estimator.fusion.learned.calibration import Calibration, narrow_sigma, scale_sigma
 from estimator.fusion.learned.delays import Radio, Suspicion
 from estimator.fusion.learned.gyros import bias_sigma_radps
-from estimator.fusion.learned.links import Links
+from estimator.fusion.learned.link_correlation import Links
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.learned.reach import Reach
 from estimator.fusion.memory.hearing import Crossing, Listener
@@ -21,7 +21,7 @@ from estimator.fusion.memory.prior import Prior
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.inertial.navigation import Navigation
-from estimator.inertial.resting import RESTED_RADPS
+from estimator.inertial.zaru import RESTED_RADPS
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node, Role
 

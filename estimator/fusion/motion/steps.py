@@ -7,13 +7,13 @@ from msgspec.structs import replace
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
-from estimator.fusion.learned.standing import stand_on
+from estimator.fusion.learned.zaru import stand_on
 from estimator.fusion.memory.nodes import NodeState
-from estimator.fusion.motion.onward import mark_after, missed_m2, onward_m
+from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m
+from estimator.fusion.motion.long_displacements import STRAIGHT_S, WALKED_MPS, turned_m2, walked_m
+from estimator.fusion.motion.recent_places import Mark
 from estimator.fusion.motion.silence import LONGEST_S, unheard_m2, went_on
-from estimator.fusion.motion.unseen import STRAIGHT_S, WALKED_MPS, turned_m2, walked_m
-from estimator.fusion.motion.way import Mark
-from estimator.inertial.led import Led
+from estimator.inertial.displacement import InertialDisplacement
 from estimator.inertial.strapdown import RATE_WALK
 from estimator.measurements.displacement import Displacement
 
@@ -112,7 +112,7 @@ class Step:
             e, n, u, length, own = e * share, n * share, u * share, length * share, duration
         elif start > pose_t:
             gap_s = min(start - pose_t, LONGEST_S)
-            untold_m2 = missed_m2(gap_s, self._missed_s, isinstance(reading, Led))
+            untold_m2 = missed_m2(gap_s, self._missed_s, isinstance(reading, InertialDisplacement))
             across = max((physics.GAP_MPS * gap_s) ** 2, untold_m2)
             up = 0.1 * across
             onward = onward_m(self._marks, gap_s, 0.0)
@@ -126,16 +126,16 @@ class Step:
             across, up = across + length**2, up + length**2
         still = own > 0.0 and length < physics.STILL_MPS * own and start <= pose_t
         turn, sets_off = self._stand(reading, still)
-        if isinstance(reading, Led):
+        if isinstance(reading, InertialDisplacement):
             up += reading.up_m2 + (physics.STRAPDOWN_SCALE_SIGMA * u) ** 2
             if reading.rested_radps > 0.0:
                 turn = Turn(t, 0.0, reading.rested_radps)
         else:
             up += (physics.SCALE_SIGMA * u) ** 2
         up += self._climb_m2(reading, length)
-        walked = length if isinstance(reading, Led) else walked_m(length, own)
+        walked = length if isinstance(reading, InertialDisplacement) else walked_m(length, own)
         noise = walk_noise((across, across, up), reading, walked, duration)
-        if own > STRAIGHT_S and not isinstance(reading, Led):
+        if own > STRAIGHT_S and not isinstance(reading, InertialDisplacement):
             unseen = turned_m2(own, noise[3], self.node.bias_told)
             noise = sum_of(noise, (unseen, unseen, 0.0, 0.0, 0.0, 0.0))
         if sets_off:
@@ -186,7 +186,7 @@ class Step:
         it, for the unit may yet show that it measures them; what it may have missed is told beside
         (estimation.md, point 8).
         """
-        if reading.delta_m[2] != 0.0 or isinstance(reading, Led):
+        if reading.delta_m[2] != 0.0 or isinstance(reading, InertialDisplacement):
             self._level, self._unseen_up_m2 = False, 0.0
         climbed_m2 = CLIMB_M2_PER_M * length if self._level else 0.0
         self._unseen_up_m2 += climbed_m2
@@ -251,7 +251,7 @@ def walk_noise(known: Vector3, reading: Displacement, length: float, duration: f
     e, n, u = known
     step = WALK_M2_PER_M * length if reading.sigma_m is None else reading.sigma_m**2
     position = step + STAND_M2_PER_S * duration + FLOOR_M2
-    if isinstance(reading, Led):
+    if isinstance(reading, InertialDisplacement):
         heading, bias = reading.turned_rad2, WARMING_PER_S * duration + reading.bias_rad2ps2
     else:
         heading, bias = TURN_RAD2_PER_M * length + TURN_RAD2_PER_S * duration, BIAS_PER_S * duration

@@ -4,11 +4,11 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.learned.zeroed import Zeroed
+from estimator.fusion.learned.altimeter_zero import AltimeterZero
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.motion.way import offset_of
-from estimator.fusion.readings.jumps import doubt_height, jump, new_altimeter
+from estimator.fusion.motion.recent_places import offset_of
+from estimator.fusion.readings.altimeter_jumps import doubt_height, jump, new_altimeter
 from estimator.graph.variable import Variable
 
 NOTHING_M2 = 1e-9
@@ -50,8 +50,8 @@ def heard_altimeter(state: FusionState, node: NodeState, t: float, up_m: float, 
 
 
 def _zero(
-    state: FusionState, node: NodeState, known: Zeroed, t: float, up_m: float, sigma_m: float
-) -> Zeroed:
+    state: FusionState, node: NodeState, known: AltimeterZero, t: float, up_m: float, sigma_m: float
+) -> AltimeterZero:
     """Hold one of its first readings against where its bearer is."""
     known = known.with_one(t, up_m - _up_m(state, node, t))
     if not known.enough(t):

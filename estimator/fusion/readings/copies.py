@@ -17,7 +17,7 @@ ONCE = (Range, Rssi, Bearing, Position, Altitude, Pressure, Drop, Retire)
 boot's own clock, and who is introduced again in the same words stays who he is."""
 
 
-def once(state: FusionState, readings: Sequence[AnyFolded]) -> list[AnyFolded]:
+def without_copies(state: FusionState, readings: Sequence[AnyFolded]) -> list[AnyFolded]:
     """The readings without copies: what says the same of the same epoch in every field was measured once.
 
     Args:

@@ -6,15 +6,15 @@ from collections.abc import Sequence
 import numpy as np
 from numba import njit
 
+from estimator.fusion.canonical_order import tick_of
 from estimator.fusion.entering.technologies import REACH, path_loss_variable
 from estimator.fusion.learned import reach
-from estimator.fusion.learned.links import KEPT, SAME_PLACE
+from estimator.fusion.learned.link_correlation import KEPT, SAME_PLACE
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.memory.hearing import Crossing, Listener, listen
 from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.order import tick_of
-from estimator.fusion.rows.descent import GOOD, PREDICTED, RESIDUAL
+from estimator.fusion.rows.gauss_newton import GOOD, PREDICTED, RESIDUAL
 from estimator.fusion.rows.rows import EXTRA, KIND, LINK, SIGMA
 from estimator.graph.dense import Array, Indices
 from estimator.measurements.rssi import Rssi
@@ -68,7 +68,7 @@ def learn_reach(state: FusionState, table: Array, told: Array) -> None:
     Args:
         state: the fusion, whose `reach` is changed.
         table: of m readings, see `rows.Row`.
-        told: what has come of them, m × 3, see `descent.RESIDUAL`.
+        told: what has come of them, m × 3, see `gauss_newton.RESIDUAL`.
     """
     start = state.graph.starts.get(path_loss_variable(REACH))
     if start is None:

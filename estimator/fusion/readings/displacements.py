@@ -4,15 +4,15 @@ import math
 from collections.abc import Sequence
 
 from estimator.fusion import physics
-from estimator.fusion.entering.changed import begin_frame, framed
 from estimator.fusion.entering.introduce import attach_unit, begin_at_base, waits_for_ranges
+from estimator.fusion.entering.replaced_unit import begin_frame, framed
 from estimator.fusion.memory.ledger import GYRO_BIAS
 from estimator.fusion.memory.state import Count, FusionState
+from estimator.fusion.motion.dead_reckoning import advance_units
 from estimator.fusion.motion.steps import Step, start_of
-from estimator.fusion.motion.units import advance_units
 from estimator.fusion.physics import NOISES
 from estimator.fusion.rows.rows import Single
-from estimator.inertial.led import Led
+from estimator.inertial.displacement import InertialDisplacement
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import MOVING_ROLES
 
@@ -33,7 +33,7 @@ def move_units(state: FusionState, readings: Sequence[Displacement], turns: list
             _count(state, reading, "not_fused")
             continue
         steps[reading.node] = step
-        if step.node.raw != isinstance(reading, Led):
+        if step.node.raw != isinstance(reading, InertialDisplacement):
             set_aside(state, reading.node, reading.t)
             _count(state, reading, "not_fused")
         elif _extend(state, step, framed(step.node, reading), turns):
@@ -65,13 +65,15 @@ def _begin(state: FusionState, reading: Displacement) -> Step | None:
             return None
         begin_at_base(state, node, start_of(reading, None))
     if state.nodes[node.node].mode == "free":
-        attach_unit(state, state.nodes[node.node], reading.heading_rad, isinstance(reading, Led))
+        attach_unit(
+            state, state.nodes[node.node], reading.heading_rad, isinstance(reading, InertialDisplacement)
+        )
     return Step(state.nodes[node.node])
 
 
 def _count(state: FusionState, reading: Displacement, what: Count) -> None:
     """Count a displacement, unless samples have made it, which are counted."""
-    if not isinstance(reading, Led):
+    if not isinstance(reading, InertialDisplacement):
         state.count(what)
 
 

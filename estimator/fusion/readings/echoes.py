@@ -13,8 +13,8 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
-from estimator.fusion.learned.links import ECHO_M, ECHO_ODDS, KEPT, LOWER_S, VALUE
-from estimator.fusion.motion.way import DECIDED, OUTSIDE, STATES
+from estimator.fusion.learned.link_correlation import ECHO_M, ECHO_ODDS, KEPT, LOWER_S, VALUE
+from estimator.fusion.motion.recent_places import DECIDED, OUTSIDE, STATES
 from estimator.graph.dense import Array
 
 SIGMAS = 5.0 * math.sqrt(2.0)
@@ -29,7 +29,7 @@ def farthest_m(a: Array, b: Array, waited_s: float, sigma_m: float) -> float:
     """The farthest that a range may differ from the one before it on its link by motion and noise (m).
 
     Args:
-        a: one end, see `way.End`.
+        a: one end, see `recent_places.TrailEnd`.
         b: the other one.
         waited_s: time between the two.
         sigma_m: standard deviation of each.

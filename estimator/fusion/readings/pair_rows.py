@@ -7,10 +7,10 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
-from estimator.fusion.learned import links
+from estimator.fusion.learned import link_correlation
 from estimator.fusion.learned.noise import link_sigma, through_sigma
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, COLUMNS, RANGE, RSSI
-from estimator.fusion.motion import way
+from estimator.fusion.motion import recent_places
 from estimator.fusion.readings import echoes
 from estimator.fusion.rows import rows
 from estimator.graph.dense import Array
@@ -73,7 +73,7 @@ def pair_rows(
     Args:
         pairs: the readings m × `PAIR`, in order of epoch.
         technologies: theirs, see `Technology`.
-        ends: their nodes, see `way.End`.
+        ends: their nodes, see `recent_places.TrailEnd`.
         marks: of the nodes' trails, k × 4.
         newest: the newest reading on each link, see `links`; changed.
         x: the reference of the graph, n.
@@ -83,7 +83,7 @@ def pair_rows(
     first, epochs = np.zeros(BEARING + 2, dtype=np.intp), np.empty(m)
     for r in range(m):
         a, b = ends[int(pairs[r, A])], ends[int(pairs[r, B])]
-        held[r] = a[way.DECIDED] != 0.0 and b[way.DECIDED] != 0.0
+        held[r] = a[recent_places.DECIDED] != 0.0 and b[recent_places.DECIDED] != 0.0
         if held[r]:
             first[1 + kind_of(technologies[int(pairs[r, TECHNOLOGY])])] += 1
     first = first.cumsum()
@@ -92,14 +92,19 @@ def pair_rows(
         a, b, link = ends[int(pair[A])], ends[int(pair[B])], int(pair[LINK])
         alike, echo_m = 1.0, 0.0
         if link >= 0:
-            waited_s = pair[T] - newest[link, links.T]
-            links.follow(newest[link], pair[T], way_m(a, pair[T]) + way_m(b, pair[T]))
-            alike = newest[link, links.ALIKE]
+            waited_s = pair[T] - newest[link, link_correlation.T]
+            link_correlation.follow(newest[link], pair[T], way_m(a, pair[T]) + way_m(b, pair[T]))
+            alike = newest[link, link_correlation.ALIKE]
             if technology[KIND] == RANGE:
                 most_m = echoes.farthest_m(a, b, waited_s, technology[FACTOR] * pair[SIGMA])
                 echo_m = echoes.hear(newest[link], waited_s, pair[VALUE], most_m)
         told = entered[r]
-        told[0], told[1], told[2], told[3] = pair[T], technology[KIND], a[way.BLOCK], b[way.BLOCK]
+        told[0], told[1], told[2], told[3] = (
+            pair[T],
+            technology[KIND],
+            a[recent_places.BLOCK],
+            b[recent_places.BLOCK],
+        )
         told[4], told[5], told[6] = pair[VALUE], pair[SIGMA], technology[SOURCE]
         told[7], told[8], told[9], told[10] = pair[CONSTANT], alike, pair[LINK], echo_m
         if held[r]:
@@ -125,27 +130,27 @@ def fill(
 ) -> None:
     """Fill the row of a reading between two decided nodes, see `rows.Row`."""
     sigma, source, link, extra = pair[SIGMA], technology[SOURCE], pair[LINK], technology[START]
-    at_a, at_b = way.offset(a, marks, x, pair[T]), way.offset(b, marks, x, pair[T])
+    at_a, at_b = recent_places.offset(a, marks, x, pair[T]), recent_places.offset(b, marks, x, pair[T])
     if kind_of(technology) == BEARING:
         source = link = -1.0
         if technology[KIND] == BODY_BEARING:
-            extra = a[way.STATES]
+            extra = a[recent_places.STATES]
     else:
         sigma = link_sigma(technology[FACTOR], technology[SHARED], pair[SIGMA], alike)
         through = abs(up_m(a, x) + at_a[2] - up_m(b, x) - at_b[2]) > physics.FLOOR_M
-        if through and a[way.OUTSIDE] == 0.0 and b[way.OUTSIDE] == 0.0:
+        if through and a[recent_places.OUTSIDE] == 0.0 and b[recent_places.OUTSIDE] == 0.0:
             # It tells nothing of what its technology is like where no floor is between.
             sigma = through_sigma(sigma, technology[KIND] == RSSI, alike)
             source = link = -1.0
         unsure_m = math.hypot(
-            way.turned_m(at_a) if a[way.TURNED] != 0.0 else 0.0,
-            way.turned_m(at_b) if b[way.TURNED] != 0.0 else 0.0,
+            recent_places.turned_m(at_a) if a[recent_places.TURNED] != 0.0 else 0.0,
+            recent_places.turned_m(at_b) if b[recent_places.TURNED] != 0.0 else 0.0,
         )
         if unsure_m > 0.0 and technology[KIND] != RSSI:
             sigma = math.hypot(sigma, unsure_m)
             source = link = -1.0
     row[rows.KIND], row[rows.VALUE], row[rows.CONSTANT] = kind_of(technology), pair[VALUE], pair[CONSTANT]
-    row[rows.A], row[rows.B], row[rows.EXTRA] = a[way.START], b[way.START], extra
+    row[rows.A], row[rows.B], row[rows.EXTRA] = a[recent_places.START], b[recent_places.START], extra
     row[rows.SIGMA], row[rows.NOMINAL] = sigma, pair[SIGMA]
     row[rows.OUTLIERS], row[rows.SHIFT] = technology[OUTLIERS], technology[SHIFT]
     row[rows.SPREAD], row[rows.SOURCE], row[rows.LINK] = technology[SPREAD], source, link
@@ -156,7 +161,7 @@ def fill(
 @njit(cache=True, error_model="numpy")
 def up_m(end: Array, x: Array) -> float:
     """Height of a node's block; 0 where it is fixed (m)."""
-    start = int(end[way.START])
+    start = int(end[recent_places.START])
     return x[start + 2] if start >= 0 else 0.0
 
 
@@ -167,4 +172,8 @@ def way_m(end: Array, t: float) -> float:
     Without PDR the way is what the readings themselves tell: were they trusted less where it stands still, it
     would seem to stand still ever after. So it is thought to walk slowly all the time.
     """
-    return physics.FREE_WAY_MPS * t if end[way.MOVES] == way.DRIFTS else end[way.WAY_M]
+    return (
+        physics.FREE_WAY_MPS * t
+        if end[recent_places.MOVES] == recent_places.DRIFTS
+        else end[recent_places.WAY_M]
+    )

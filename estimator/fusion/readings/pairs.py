@@ -19,10 +19,10 @@ from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.recent_places import Mark, TrailEnd, end_of, table_of_marks
 from estimator.fusion.motion.silence import SILENT_S
-from estimator.fusion.motion.way import End, Mark, end_of, table_of_marks
 from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
-from estimator.fusion.readings.repeated import is_repeated
+from estimator.fusion.readings.repeated_ranges import is_repeated
 from estimator.fusion.rows.rows import FIELDS, table_from
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import Bearing
@@ -63,7 +63,7 @@ class Pairs:
         self._state = state
         self._told: list[float] = []
         self._named: dict[str, Named] = {}
-        self._ends: list[End] = []
+        self._ends: list[TrailEnd] = []
         self._marks: list[Mark] = []
         self._technologies: list[Technology] = []
         self._held: dict[str, int] = {}
@@ -131,7 +131,7 @@ class Pairs:
         made = pair_rows(
             np.array(self._told).reshape(-1, PAIR),
             table_from(self._technologies, len(Technology._fields)),
-            table_from(self._ends, len(End._fields)),
+            table_from(self._ends, len(TrailEnd._fields)),
             table_of_marks(self._marks),
             state.links.table,
             state.graph.reference,

@@ -7,7 +7,7 @@ from itertools import groupby
 from msgspec.structs import replace
 
 from estimator.fusion.memory.state import FusionState
-from estimator.inertial.led import Led
+from estimator.inertial.displacement import InertialDisplacement
 from estimator.measurements.displacement import Displacement
 
 COPY = 1e-6
@@ -15,7 +15,7 @@ COPY = 1e-6
 
 
 def _whose(reading: Displacement) -> tuple[float, str, bool]:
-    return reading.t, reading.node, isinstance(reading, Led)
+    return reading.t, reading.node, isinstance(reading, InertialDisplacement)
 
 
 def joined(state: FusionState, readings: Sequence[Displacement]) -> list[Displacement]:

@@ -14,10 +14,10 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from estimator.graph.assembly import add_part
 from estimator.graph.dense import Array, factorise, inverse, log_determinant, mended, solve
-from estimator.graph.scatter import add_part
-from estimator.smoothing.chain.at_once import at_once
 from estimator.smoothing.chain.groups import Group
+from estimator.smoothing.chain.parallel import in_parallel
 from estimator.smoothing.chain.strand import Strand
 
 NOTHING = factorise(np.zeros((0, 0)))
@@ -79,7 +79,7 @@ class Chain:
             own: as many of each as there are strands.
         """
         if self._large:
-            return at_once(work, self.strands, *own)
+            return in_parallel(work, self.strands, *own)
         return [work(*row) for row in zip(self.strands, *own, strict=True)]
 
     def damp(self, damping: float) -> None:

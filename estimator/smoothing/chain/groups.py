@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from estimator.graph.assembly import couple, localise
+from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Indices
-from estimator.graph.kernels import Integers
-from estimator.graph.scatter import couple, localise
 from estimator.smoothing.keyframes.walks import STATES
 
 
@@ -26,7 +26,7 @@ class Group(NamedTuple):
     lasting: Indices
 
 
-class Placed(NamedTuple):
+class GroupedReadings(NamedTuple):
     """Readings among the groups, m.
 
     Attributes:
@@ -80,7 +80,7 @@ class Groups:
         """The group of a walk, and which of the group's walks it is."""
         return int(self._group[walk]), int(self._block[walk])
 
-    def placed(self, slab: Integers, columns: Integers) -> Placed:
+    def placed(self, slab: Integers, columns: Integers) -> GroupedReadings:
         """Rows with columns as in `coupled`, each in its own group's numbering."""
         local, order, ends = localise(columns, self._width, STATES, self._group, self._place)
-        return Placed(slab, local, [order[first:last] for first, last in pairwise(ends.tolist())])
+        return GroupedReadings(slab, local, [order[first:last] for first, last in pairwise(ends.tolist())])

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from estimator.graph.assembly import add_motion, scatter_rows
+from estimator.graph.chain_kernels import Integers, eliminate, selected_inverse, substitute, take_off
 from estimator.graph.dense import Array, mended
-from estimator.graph.kernels import Integers, eliminate, selected_inverse, substitute, take_off
 from estimator.graph.right_sides import carry, carry_back
-from estimator.graph.scatter import add_motion, scatter_rows
-from estimator.smoothing.chain.groups import Group, Placed
+from estimator.smoothing.chain.groups import Group, GroupedReadings
 from estimator.smoothing.keyframes.walks import Motion
 
 
@@ -70,7 +70,7 @@ class Strand:
         return self.wide[:, :, -1]
 
     def add(
-        self, placed: Placed, chosen: Integers, jacobian: Array, information: Array, residual: Array
+        self, placed: GroupedReadings, chosen: Integers, jacobian: Array, information: Array, residual: Array
     ) -> None:
         """Add some of m rows.
 

@@ -11,10 +11,10 @@ from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements.node import MOVING_ROLES
-from estimator.smoothing.changes.moved import Moved
+from estimator.smoothing.changes.moved_nodes import MovedNode
 
 
-def branch(state: FusionState, moved: Moved) -> None:
+def branch(state: FusionState, moved: MovedNode) -> None:
     """Let a moved node begin anew with what was measured to it since.
 
     It is undecided until that decides it: from a straight way two places explain the same ranges.

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from estimator.fusion.images import turned_about
 from estimator.graph.dense import Array
-from estimator.smoothing.images.flips import Flip
-from estimator.smoothing.images.turns import drops_along, turns_whole
-from estimator.smoothing.keyframes.numbers import Numbers
+from estimator.smoothing.images.flip_ambiguity import Flip
+from estimator.smoothing.images.heading_images import drops_along, turns_whole
+from estimator.smoothing.keyframes.unknowns import Unknowns
 from estimator.smoothing.keyframes.walks import HEADING
-from estimator.smoothing.problem.aside import Aside, aside
-from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.held_quadratic import HeldQuadratic, hold_quadratic
+from estimator.smoothing.problem.newton import Problem
 
 BEGINNING_S, LONGER = 60.0, 4.0
 """How much of a way is asked first of which heading it has; and how many times as much then."""
@@ -31,7 +31,7 @@ class Part:
         x: the window's estimate in which all others are held, flat.
     """
 
-    def __init__(self, whole: Problem, problem: Problem, numbers: Numbers, x: Array) -> None:
+    def __init__(self, whole: Problem, problem: Problem, numbers: Unknowns, x: Array) -> None:
         self._whole, self.problem, self.numbers = whole, problem, numbers
         self._cost = problem.at(numbers.taken(x)).cost
 
@@ -112,12 +112,12 @@ class Parts:
         """
         key = frozenset(walks), until
         if key not in self._found:
-            numbers = Numbers(self.problem.layout, walks, until)
+            numbers = Unknowns(self.problem.layout, walks, until)
             part = self.problem.part(numbers, self.x, *self._divided(numbers))
             self._found[key] = Part(self.problem, part, numbers, self.x)
         return self._found[key]
 
-    def _divided(self, numbers: Numbers) -> tuple[NDArray[np.bool_], Aside]:
+    def _divided(self, numbers: Unknowns) -> tuple[NDArray[np.bool_], HeldQuadratic]:
         """The rows of a part, and what those say of the border that do not tell of its walks.
 
         What tells of them later on is in neither: that costs no less than nothing.
@@ -125,5 +125,7 @@ class Parts:
         layout, rows = self.problem.layout, self.problem.rows
         own = rows.of([layout.walks[i].number for i in numbers.walks])
         border = self.x[layout.length * layout.width :]
-        left = aside(np.flatnonzero(~own), self._border, self._linear.jacobian, self._weighted, border)
+        left = hold_quadratic(
+            np.flatnonzero(~own), self._border, self._linear.jacobian, self._weighted, border
+        )
         return own & (rows.slab <= numbers.until), left

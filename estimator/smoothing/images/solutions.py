@@ -10,12 +10,12 @@ from collections.abc import Iterable
 import numpy as np
 
 from estimator.fusion.images import Image
-from estimator.smoothing.images.earlier import CLEARER
-from estimator.smoothing.images.flips import Flip
+from estimator.smoothing.images.earlier_images import CLEARER
+from estimator.smoothing.images.flip_ambiguity import Flip
+from estimator.smoothing.images.image_starts import ImageEnd, ImageSolution, ImageStart, Subject
+from estimator.smoothing.images.local_solution import SOON, local_solution
 from estimator.smoothing.images.parts import Parts
-from estimator.smoothing.images.reached import SOON, reached
-from estimator.smoothing.images.tried import Asked, Begun, Led, Tried
-from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.problem.solution import Solution
 
 HELD, ALONE = 150.0, 10.0
 """What an image costs more, in log likelihood, that is given up with all others held where they are; and so
@@ -26,7 +26,9 @@ SLACKS_M = (1.0, 0.3, 0.1)
 """How far off an estimate may be at first whose way nobody has gone: with a unit turned, or others along."""
 
 
-def solutions(asked: Asked, parts: Parts, solved: Solved, begun: Iterable[Begun], most: int) -> list[Tried]:
+def solutions(
+    asked: Subject, parts: Parts, solved: Solution, begun: Iterable[ImageStart], most: int
+) -> list[ImageSolution]:
     """The solutions that images of a way lead to, that which is to be shown first.
 
     Args:
@@ -36,7 +38,7 @@ def solutions(asked: Asked, parts: Parts, solved: Solved, begun: Iterable[Begun]
         begun: where each of them begins, with all others where they are in the solution.
         most: so many of them are solved as a whole.
     """
-    found, tried, led = [Tried(solved, Flip(0, Image()))], list[Begun](), list[Led]()
+    found, tried, led = [ImageSolution(solved, Flip(0, Image()))], list[ImageStart](), list[ImageEnd]()
     tied = _tied(asked)
     for start in begun:
         if any(asked.same_start(start, other) for other in tried):
@@ -52,10 +54,10 @@ def solutions(asked: Asked, parts: Parts, solved: Solved, begun: Iterable[Begun]
     for start, cost in led[:most]:
         # With nobody held it has led nowhere yet.
         slacks = _slacks(start.flip) if cost == math.inf else ()
-        solution = reached(asked.problem, start.x, slacks, found[0].solved)
+        solution = local_solution(asked.problem, start.x, slacks, found[0].solved)
         if solution is None:
             continue
-        new = Tried(solution, start.flip)
+        new = ImageSolution(solution, start.flip)
         same = asked.among([one.led for one in found], new.led)
         if same is None:
             found.append(new)
@@ -67,7 +69,9 @@ def solutions(asked: Asked, parts: Parts, solved: Solved, begun: Iterable[Begun]
     return [best, *(one for one in found if one is not best)]
 
 
-def _led(asked: Asked, parts: Parts, known: Tried, start: Begun, tied: bool) -> Led | None:
+def _led(
+    asked: Subject, parts: Parts, known: ImageSolution, start: ImageStart, tied: bool
+) -> ImageEnd | None:
     """Where an image leads to with all others held where they are; None: to no solution that is not known.
 
     Two headings part soon, or they are one: first the beginning of a way is asked alone.
@@ -81,7 +85,7 @@ def _led(asked: Asked, parts: Parts, known: Tried, start: Begun, tied: bool) -> 
     """
     layout, moving = asked.layout, {asked.of, *(i for i, _ in start.flip.along)}
     slacks, last = _slacks(start.flip), layout.length - 1
-    led = Led(start, math.inf)
+    led = ImageEnd(start, math.inf)
     for until in parts.stages(start.flip):
         if until == last and len(moving) == len(layout.walks):
             return led._replace(cost=math.inf)
@@ -91,10 +95,10 @@ def _led(asked: Asked, parts: Parts, known: Tried, start: Begun, tied: bool) -> 
         except ValueError:
             # It hangs in the air there.
             return None
-        led = Led(start._replace(x=x), part.more(x))
+        led = ImageEnd(start._replace(x=x), part.more(x))
         if led.cost > (HELD if tied else ALONE):
             return None
-        home = Led(known.begun, part.more(known.solved.x))
+        home = ImageEnd(known.begun, part.more(known.solved.x))
         if not asked._replace(part=part).same(home, led):
             continue
         # A beginning that is the same goes on the same way: what it gains by itself is no gain.
@@ -104,7 +108,7 @@ def _led(asked: Asked, parts: Parts, known: Tried, start: Begun, tied: bool) -> 
     return led
 
 
-def _same(asked: Asked, parts: Parts, one: Led, other: Led) -> bool:
+def _same(asked: Subject, parts: Parts, one: ImageEnd, other: ImageEnd) -> bool:
     """Whether two images have led to the same, with all others held."""
     if math.inf in (one.cost, other.cost):
         return False
@@ -112,7 +116,7 @@ def _same(asked: Asked, parts: Parts, one: Led, other: Led) -> bool:
     return asked._replace(part=parts.of(moving, asked.layout.length - 1)).same(one, other)
 
 
-def _tied(asked: Asked) -> bool:
+def _tied(asked: Subject) -> bool:
     """Whether readings tie a walk to others who move."""
     walks, pairs = asked.layout.walks, asked.problem.rows.pairs
     own, others = walks[asked.of].number, [walk.number for walk in walks]

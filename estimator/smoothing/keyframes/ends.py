@@ -6,11 +6,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.graph.kernels import Integers
+from estimator.smoothing.keyframes.displacement_sums import SummedEnds, Ways, lay_out, ways_of
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES, lead
-from estimator.smoothing.keyframes.ways import Laid, Ways, lay_out, ways_of
 
 FIXED, STANDING, UNIT, FREE, UNPLACED = range(5)
 
@@ -141,7 +141,7 @@ def place_ends(ends: Table, x: Array) -> Places:
     return Places(place, turned)
 
 
-class Stood(NamedTuple):
+class Supports(NamedTuple):
     """Between which numbers of a window m ends of readings are.
 
     Attributes:
@@ -172,7 +172,7 @@ def stand(
     grid: Array,
     times: Array,
     lives: Integers,
-) -> Stood:
+) -> Supports:
     """Where ends of readings belong in the unknowns of a window.
 
     Args:
@@ -211,7 +211,7 @@ def stand(
             for c in range(STATES):
                 columns[i, c] = STATES * walk + c
                 flat[i, c] = at * width + columns[i, c]
-    return Stood(kind, slab, columns, flat, fixed, since, usable)
+    return Supports(kind, slab, columns, flat, fixed, since, usable)
 
 
 class Ground(NamedTuple):
@@ -248,7 +248,7 @@ class Ends(NamedTuple):
         table: what its place follows from.
     """
 
-    stood: Stood
+    stood: Supports
     unsure_m2: Array
     table: Table
 
@@ -265,7 +265,7 @@ def ends_of(ground: Ground, numbers: Integers, t: Array, nearest: NDArray[np.boo
     """
     m, ways = len(numbers), ground.ways
     stood = stand(ground.nodes, numbers, t, nearest, ground.grid, ground.times, ground.spans)
-    laid = Laid(np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)))
+    laid = SummedEnds(np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)))
     for w in range(len(ways.numbers) if m else 0):
         own = slice(ways.firsts[w], ways.firsts[w + 1])
         told = ways.begin_t[w], ways.marks[own], ways.sums[own]
@@ -287,7 +287,7 @@ def taken(ends: Ends, chosen: NDArray[np.bool_]) -> Ends:
     stood, table = ends.stood, ends.table
     kind, flat, fixed_m = stood.kind[chosen], stood.flat[chosen], stood.fixed_m[chosen]
     since_t = stood.since_t[chosen]
-    some = Stood(
+    some = Supports(
         kind, stood.slab[chosen], stood.columns[chosen], flat, fixed_m, since_t, stood.usable[chosen]
     )
     delta_m, moment, duration_s = table.delta_m[chosen], table.moment[chosen], table.duration_s[chosen]

@@ -10,11 +10,11 @@ from estimator.fusion.memory.ledger import UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.prior import Key, Prior
 from estimator.fusion.memory.state import FusionState
+from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.graph.kernels import Integers
 from estimator.graph.variable import DIMENSION, TECHNOLOGIES, Variable
+from estimator.smoothing.keyframes.displacement_sums import Way
 from estimator.smoothing.keyframes.walks import HEADING, STATES
-from estimator.smoothing.keyframes.ways import Way
 
 
 class Walk(NamedTuple):

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion.motion.free import free_motion
+from estimator.fusion.motion.constant_velocity import free_motion
+from estimator.graph.chain_kernels import half_inverse
 from estimator.graph.dense import Array
-from estimator.graph.kernels import half_inverse
 
 FLOOR = np.array([1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12])
 VARIANCES = np.array([6, 6, 7, 8, 9, 10])
@@ -34,7 +34,7 @@ class Motion(NamedTuple):
     information: Array
 
 
-class Led(NamedTuple):
+class Dependence(NamedTuple):
     """Where a displacement leads to, less where from (m), and its derivatives by heading, bias and scale."""
 
     east: float
@@ -49,14 +49,14 @@ class Led(NamedTuple):
 
 
 @njit(cache=True)
-def lead(cosine: float, sine: float, bias: float, scale: float, delta_m: Array, moment: Array) -> Led:
+def lead(cosine: float, sine: float, bias: float, scale: float, delta_m: Array, moment: Array) -> Dependence:
     """What is s Rz(ψ) (Δ + β J M) of one displacement Δ (3) with its first moment M (3), and its slopes.
 
     Heights are not scaled: see `measurements.displacement.move`.
     """
     bent_e, bent_n = delta_m[0] - bias * moment[1], delta_m[1] + bias * moment[0]
     east, north = cosine * bent_e - sine * bent_n, sine * bent_e + cosine * bent_n
-    return Led(
+    return Dependence(
         scale * east,
         scale * north,
         delta_m[2],

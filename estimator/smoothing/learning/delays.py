@@ -20,10 +20,10 @@ from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.robust import mixture_cost
-from estimator.smoothing.learning.radios import Delay, Told, common, told_by
-from estimator.smoothing.learning.suspected import suspicions
-from estimator.smoothing.problem.solve import Problem
-from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.learning.radios import Delay, RangesByRadio, common, told_by
+from estimator.smoothing.learning.suspected_delays import suspicions
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
 
 RARE = math.log(physics.DELAYED / (1.0 - physics.DELAYED))
 ODDS = math.log(TRUSTED / (1.0 - TRUSTED)) - RARE
@@ -44,7 +44,7 @@ AGAIN, LONGEST_S = 0.5, 60.0
 """It is asked again after this share of the window, or where something is suspicious, with each solution."""
 
 
-def doubt_delays(state: FusionState, problem: Problem, solved: Solved) -> None:
+def doubt_delays(state: FusionState, problem: Problem, solved: Solution) -> None:
     """Trust no radio any longer that is likely to be off: its ranges become a technology by themselves.
 
     Args:
@@ -108,7 +108,7 @@ def distrust(state: FusionState, radios: list[Delay]) -> None:
     state.due = True
 
 
-def delays(problem: Problem, solved: Solved) -> list[Delay]:
+def delays(problem: Problem, solved: Solution) -> list[Delay]:
     """How likely each radio is to be off, the likeliest first; those that are known to be are not asked.
 
     Args:
@@ -124,7 +124,7 @@ def _likeliest(pulling: list[Delay], unbelieved: list[Delay]) -> list[Delay]:
     return sorted(found.values(), key=lambda one: -one.odds)
 
 
-def pulling_of(problem: Problem, solved: Solved, told: Told) -> list[Delay]:
+def pulling_of(problem: Problem, solved: Solution, told: RangesByRadio) -> list[Delay]:
     """Radios that have bent the map: by their scores, and what of them the map has taken up."""
     layout, total = problem.layout, told.told.sum(axis=1)
     size = layout.length * layout.width
@@ -145,7 +145,7 @@ def pulling_of(problem: Problem, solved: Solved, told: Told) -> list[Delay]:
     return [one for one in found if one is not None]
 
 
-def _worth(problem: Problem, solved: Solved, told: Told) -> Array:
+def _worth(problem: Problem, solved: Solution, told: RangesByRadio) -> Array:
     """What the ranges of each radio are worth, of what they would be did each err by itself.
 
     What lasts while nobody moves the estimate follows, and no residual shows it: k ranges of variance w that
@@ -188,7 +188,7 @@ def judged(radio: Radio, score: Array, left: Array) -> Delay | None:
     return Delay(radio, odds, bias_m, constant, max(square - usual, 0.0))
 
 
-def _unbelieved(problem: Problem, solved: Solved, told: Told) -> list[Delay]:
+def _unbelieved(problem: Problem, solved: Solution, told: RangesByRadio) -> list[Delay]:
     """Radios most of whose ranges are outliers, and would be none if all of them were off by the same.
 
     They bend nothing: their scores are nil, and what is to be gained is seen with the map as it is.

@@ -6,11 +6,11 @@ import numpy as np
 
 from estimator.fusion.learned.delays import Radio, reported_as
 from estimator.fusion.memory.ledger import RANGE
+from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array, Indices
-from estimator.graph.kernels import Integers
-from estimator.smoothing.learning.scores import halves, through
-from estimator.smoothing.problem.solve import Problem
-from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.learning.delay_scores import halves, through
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
 
 
 class Delay(NamedTuple):
@@ -31,7 +31,7 @@ class Delay(NamedTuple):
     off_m2: float
 
 
-class Told(NamedTuple):
+class RangesByRadio(NamedTuple):
     """The ranges of a window, by the radios at their ends.
 
     Attributes:
@@ -51,7 +51,7 @@ class Told(NamedTuple):
     told: Array
 
 
-def told_by(problem: Problem, solved: Solved) -> Told:
+def told_by(problem: Problem, solved: Solution) -> RangesByRadio:
     """The ranges of a solution, by the radios at their ends."""
     rows, state = problem.rows, problem.layout.state
     ranges, nodes = np.flatnonzero(rows.pairs[:, 1] == RANGE), len(state.owners)
@@ -65,10 +65,10 @@ def told_by(problem: Problem, solved: Solved) -> Told:
             place[key] = each.setdefault(radio, len(each))
     weighted, carried = solved.weighted, place[keys]
     weight, residual = weighted.information[ranges], weighted.residual[ranges]
-    return Told(list(each), ranges, carried, *halves(carried, weight, residual, len(each)))
+    return RangesByRadio(list(each), ranges, carried, *halves(carried, weight, residual, len(each)))
 
 
-def common(problem: Problem, solved: Solved, told: Told, radios: Indices) -> Array:
+def common(problem: Problem, solved: Solution, told: RangesByRadio, radios: Indices) -> Array:
     """What the unknowns have in common with biases of radios in both halves of the time, n × 2 c.
 
     Args:

@@ -4,13 +4,13 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion.memory.ledger import RANGE, RSSI
+from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.graph.kernels import Integers
 from estimator.measurements.range import range_slope
 from estimator.measurements.rssi import ANTENNA_M, rssi_slope
 from estimator.smoothing.keyframes.ends import faced, place_end
 from estimator.smoothing.keyframes.walks import PLACES, STATES
-from estimator.smoothing.readings.linear import Readings
+from estimator.smoothing.readings.linearisation import Readings
 
 NOWHERE_M2 = 1e-6
 
@@ -45,7 +45,7 @@ def add_bends(
         residual: z − h(x) as it is weighed, m at least.
         signed: take negative curvature along the floor too; else only what is positive.
         slab: keyframe of each pair, m at least.
-        columns: as `graph.scatter.scatter_rows` takes them, m at least.
+        columns: as `graph.assembly.scatter_rows` takes them, m at least.
         diagonal: k × n × n, changed.
         wide: border and gradient of each keyframe, k × n × (s + 1); the border is changed.
         corner: s × s, changed.

@@ -10,8 +10,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from estimator.fusion import physics
+from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.graph.kernels import Integers
 
 SPAN_S, LEAST = physics.ENCOUNTER_S, physics.ENCOUNTER_READINGS
 

@@ -17,8 +17,8 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
+from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.graph.kernels import Integers
 from estimator.levels import STOREY_M
 
 SHARED = 0.3
@@ -58,7 +58,7 @@ def excess(link: Integers, alike: Array, residual: Array, steep_m: Array) -> Exc
 
     Args:
         link: number of each one's link, m; readings of a link in order of epoch.
-        alike: which number in its row of alike readings each is, m: see `fusion.learned.links`.
+        alike: which number in its row of alike readings each is, m: see `fusion.learned.link_correlation`.
         residual: measured less predicted, m (m): only how it scatters on a link counts.
         steep_m: by how much the ends of each differ in height, m (m).
     """

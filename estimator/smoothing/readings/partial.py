@@ -6,14 +6,14 @@ from numpy.typing import NDArray
 from estimator.fusion.memory.ledger import BODY_BEARING
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.ends import FIXED, FREE, UNIT, Table, place_ends
-from estimator.smoothing.keyframes.numbers import Numbers
-from estimator.smoothing.readings.linear import Readings
+from estimator.smoothing.keyframes.unknowns import Unknowns
+from estimator.smoothing.readings.linearisation import Readings
 
 Chosen = NDArray[np.bool_]
 
 
 def partial(
-    readings: Readings, numbers: Numbers, x: Array, pairs: Chosen, singles: Chosen, drops: Chosen
+    readings: Readings, numbers: Unknowns, x: Array, pairs: Chosen, singles: Chosen, drops: Chosen
 ) -> Readings:
     """Some readings of a window as those of a part of it.
 
@@ -47,7 +47,7 @@ def partial(
     )
 
 
-def _ends(table: Table, numbers: Numbers, x: Array, chosen: Chosen) -> Table:
+def _ends(table: Table, numbers: Unknowns, x: Array, chosen: Chosen) -> Table:
     """Some ends of readings in a part of their window."""
     kind, at, fixed_m, delta_m, moment, duration_s = table
     some = Table(

@@ -11,18 +11,25 @@ from estimator.fusion import physics
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.memory.ledger import BEARING, ECHO, RANGE, RSSI, UNTOLD_POWER
 from estimator.fusion.readings import echoes
+from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.graph.kernels import Integers
 from estimator.measurements.bearing import wrap
 from estimator.smoothing.keyframes.ends import FREE, UNIT, ground_of, place_ends
 from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.keyframes.numbers import Numbers
-from estimator.smoothing.readings.arranged import NOISES, Arranged, scattered, sigmas
-from estimator.smoothing.readings.linear import Readings, add_unsure, apart, jacobians, residuals, stretch
+from estimator.smoothing.keyframes.unknowns import Unknowns
+from estimator.smoothing.readings.linearisation import (
+    Readings,
+    add_unsure,
+    apart,
+    jacobians,
+    residuals,
+    stretch,
+)
 from estimator.smoothing.readings.obstructed import excess
 from estimator.smoothing.readings.partial import partial
-from estimator.smoothing.readings.placed import ALTIMETER, Told, placed
-from estimator.smoothing.readings.rarer import once_a_second
+from estimator.smoothing.readings.stacked import NOISES, StackedReadings, scattered, sigmas
+from estimator.smoothing.readings.thinning import once_a_second
+from estimator.smoothing.readings.window_readings import ALTIMETER, LedgerRows, window_readings
 
 PER_ROW = ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike", "turns", "told", "_alone")
 """What there is one of for each row."""
@@ -46,7 +53,7 @@ class Rows:
     Attributes:
         t: epoch of each row, m (s).
         slab: keyframe of each row, m.
-        columns: what each depends on, m × 14, as `graph.kernels.scatter_rows` takes it.
+        columns: what each depends on, m × 14, as `graph.chain_kernels.scatter_rows` takes it.
         sigma: standard deviation of the good noise, m.
         told: the same by technology and link alone, wherever both ends are, m.
         shift: what they are thought to be too long by, m.
@@ -65,10 +72,10 @@ class Rows:
 
     def __init__(self, layout: Layout, since_t: float) -> None:
         self._layout, ledger = layout, layout.state.ledger
-        told = Told(ledger.table("pairs"), ledger.table("singles"), ledger.table("drops"))
+        told = LedgerRows(ledger.table("pairs"), ledger.table("singles"), ledger.table("drops"))
         nodes = layout.state.nodes
         outside = [nodes[name].role in physics.OUTSIDE_ROLES for name in layout.state.owners]
-        found = placed(
+        found = window_readings(
             told,
             since_t,
             ground_of(layout),
@@ -76,7 +83,7 @@ class Rows:
             np.array(outside, dtype=bool),
             layout.headings(),
         )
-        self._rows: Arranged = found.rows
+        self._rows: StackedReadings = found.rows
         self.pairs, self.singles, self.drops = found.told
         self.t, self.slab, self.columns, self.noise, self.nominal, self.source, self.alike = found.rows
         self.turns: NDArray[np.bool_] = found.turns
@@ -103,7 +110,7 @@ class Rows:
         singles = named[self.singles[:, 1].astype(np.intp)]
         return np.concatenate([named[pairs].any(axis=1), singles, np.repeat(named[drops].any(axis=1), 3)])
 
-    def part(self, numbers: Numbers, x: Array, chosen: NDArray[np.bool_]) -> Self:
+    def part(self, numbers: Unknowns, x: Array, chosen: NDArray[np.bool_]) -> Self:
         """Some of them, as readings of a part of the window; nothing is to be learned of their noise.
 
         Args:

@@ -19,14 +19,14 @@ from estimator.fusion.learned.reach import in_metres
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
-from estimator.smoothing.images.otherwise import Mode, otherwise
+from estimator.smoothing.images.alternatives import Mode, alternatives_now
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES
-from estimator.smoothing.problem.solve import Problem
-from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
-from estimator.smoothing.results.calibrated import doubted, scales, suspected
-from estimator.smoothing.results.swung import last_headings, responses, swung
+from estimator.smoothing.results.calibration_doubt import doubted, scales, suspected
+from estimator.smoothing.results.heading_arcs import last_headings, responses, swung
 
 HELD_MAX = 30
 REJECTED_MAX = 20
@@ -45,7 +45,7 @@ SINGLE_KINDS: dict[int, EvidenceKind] = {
 
 
 def explain(
-    state: FusionState, problem: Problem, solved: Solved, modes: Sequence[Mode], name: str
+    state: FusionState, problem: Problem, solved: Solution, modes: Sequence[Mode], name: str
 ) -> Evidence | None:
     """What holds the newest fix of a node.
 
@@ -77,7 +77,7 @@ def explain(
     headings, judged = last_headings(layout), scales(layout)
     told = responses(layout, solved, [start, start + 1, start + 2, *headings, *judged])
     covariance = 0.5 * (told[start : start + 3, :3] + told[start : start + 3, :3].T)
-    doubt = doubt_m2(otherwise(layout, solved.x, modes).get(name, ()), solved.x[start : start + 2])
+    doubt = doubt_m2(alternatives_now(layout, solved.x, modes).get(name, ()), solved.x[start : start + 2])
     across = told[:, :2]
     total = float(np.trace(covariance[:2, :2]))
     doubt += swung(told[:, 3 : 3 + len(headings)], headings, start)
@@ -120,7 +120,7 @@ def _flat(layout: Layout, rows: Rows) -> Array:
     return np.where(rows.columns < 0, -1, np.where(rows.columns < layout.width, keyframe, border))
 
 
-def _row(state: FusionState, rows: Rows, solved: Solved, flat: Array, i: int, share: float) -> Measurement:
+def _row(state: FusionState, rows: Rows, solved: Solution, flat: Array, i: int, share: float) -> Measurement:
     owners, m, n = state.owners, len(rows.pairs), len(rows.singles)
     b: str | None = None
     kind: EvidenceKind
@@ -176,7 +176,7 @@ def _joined(listed: list[Measurement]) -> list[Measurement]:
     return list(kept.values())
 
 
-def _walked(layout: Layout, solved: Solved, across: Array, total: float) -> list[Measurement]:
+def _walked(layout: Layout, solved: Solution, across: Array, total: float) -> list[Measurement]:
     """Each unit's dead reckoning as one measurement: the power of all its steps."""
     found = []
     size = layout.length * layout.width

@@ -7,7 +7,7 @@ import numpy as np
 
 from estimator.estimate import TrackPoint
 from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, tuple_of, upper_triangle
-from estimator.fusion.motion.free import free_motion
+from estimator.fusion.motion.constant_velocity import free_motion
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.layout import Layout, Walk
 from estimator.smoothing.keyframes.walks import led_by

@@ -8,9 +8,9 @@ import pytest
 
 from backend.errors import NotFound
 from backend.tracking import smoothing
-from backend.tracking.aside import smooth_log
 from backend.tracking.heads import Head
 from backend.tracking.smoothing import Smoothing
+from backend.tracking.sums_process import smooth_log
 from estimator.trackers.base import TrackerSettings
 
 

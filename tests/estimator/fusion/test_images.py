@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from estimator.fusion.images import Image, Otherwise, doubt_between_m2, doubt_m2, mirrored, turned_about
+from estimator.fusion.images import Alternative, Image, doubt_between_m2, doubt_m2, mirrored, turned_about
 from estimator.graph.dense import Array
 
 metres = st.floats(-50.0, 50.0)
@@ -64,7 +64,7 @@ def test_who_is_moved_there_goes_on_as_his_image_would(image: Image, seed: int) 
 def test_doubt_is_the_second_moment_of_where_he_may_be_about_where_he_is_shown(
     told: list[tuple[float, Image]], place: Array
 ) -> None:
-    others = [Otherwise(0, share, image, 0.0, image) for share, image in told]
+    others = [Alternative(0, share, image, 0.0, image) for share, image in told]
     drawn = [(share, image.of(place) - place) for share, image in told]
     east, north = (sum(share * off[axis] ** 2 for share, off in drawn) for axis in (0, 1))
     both = sum(share * off[0] * off[1] for share, off in drawn)
@@ -77,7 +77,7 @@ def test_who_would_be_elsewhere_together_is_no_less_surely_beside_each_other(
     share: float, way: Image, place: Array, other: Array
 ) -> None:
     off = way.of(place) - place
-    together = [(Otherwise(1, share, Image().through(at, at + off), 5.0, way),) for at in (place, other)]
+    together = [(Alternative(1, share, Image().through(at, at + off), 5.0, way),) for at in (place, other)]
     assert doubt_between_m2(together[0], place, together[1], other) == pytest.approx(0.0, abs=1e-9)
 
 
@@ -85,7 +85,7 @@ def test_who_would_be_elsewhere_together_is_no_less_surely_beside_each_other(
 def test_who_would_be_elsewhere_alone_is_so_to_everybody(
     share: float, way: Image, place: Array, other: Array
 ) -> None:
-    alone = (Otherwise(1, share, way, 5.0, way),)
+    alone = (Alternative(1, share, way, 5.0, way),)
     expected = doubt_m2(alone, place)
     assert doubt_between_m2(alone, place, (), other) == pytest.approx(expected, abs=1e-9)
     assert doubt_between_m2((), other, alone, place) == pytest.approx(expected, abs=1e-9)

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from estimator.fusion.learned.links import ECHO_M, ECHO_ODDS, ERROR, KEPT, NEW
+from estimator.fusion.learned.link_correlation import ECHO_M, ECHO_ODDS, ERROR, KEPT, NEW
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.physics import ECHOES
-from estimator.fusion.rows.descent import GOOD, INDEFINITE, RESIDUAL, SOLVED, UNSOLVABLE, Found
-from estimator.fusion.rows.followed import units_from
+from estimator.fusion.rows.gauss_newton import GOOD, INDEFINITE, RESIDUAL, SOLVED, UNSOLVABLE, Minimum
+from estimator.fusion.rows.rival_kernels import units_from
 from estimator.fusion.rows.rows import (
     EXTRA,
     FIELDS,
@@ -22,7 +22,7 @@ from estimator.fusion.rows.rows import (
     A,
     B,
 )
-from estimator.fusion.update import hold, odd, tally
+from estimator.fusion.update import ask_and_take_in, outlier_again, tally
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.variable import Variable
@@ -32,10 +32,10 @@ X = np.array([POWER_DBM, EXPONENT])
 """A state of one radio law."""
 
 
-def found(residual: Array, predicted: Array, good: Array) -> Found:
+def found(residual: Array, predicted: Array, good: Array) -> Minimum:
     """What readings have led to."""
     none = np.zeros(len(residual))
-    return Found(SOLVED, X, X, np.zeros((len(none), 8)), none, residual, predicted, good, False)
+    return Minimum(SOLVED, X, X, np.zeros((len(none), 8)), none, residual, predicted, good, False)
 
 
 def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_link() -> None:
@@ -103,10 +103,10 @@ def test_an_outlier_is_told_from_two_in_a_row_on_one_link(kept: float, error: fl
     table[:, LINK] = -1, 0
     links[0, KEPT], links[0, ERROR] = kept, error
     bad, good = np.array([0.1, 0.1]), np.array([0.9, 0.9])
-    assert odd(table, bad, links, doubted=False) == again
-    assert odd(table, bad, links, doubted=True)
-    assert not odd(table, good, links, doubted=True)
-    assert not odd(table[:0], good[:0], links, doubted=True)
+    assert outlier_again(table, bad, links, doubted=False) == again
+    assert outlier_again(table, bad, links, doubted=True)
+    assert not outlier_again(table, good, links, doubted=True)
+    assert not outlier_again(table[:0], good[:0], links, doubted=True)
 
 
 def unit(information: float = 4.0) -> Kirchhoff:
@@ -124,7 +124,7 @@ def held(graph: Kirchhoff, heading_rad: float) -> tuple[tuple[int, float, bool, 
     table[0, SIGMA], table[0, NOMINAL], table[0, OUTLIERS] = 0.5, 0.5, 0.0
     newest, sums = np.array([NEW]), np.zeros((1, 6))
     changed, base_m, epochs, nobody = graph.turning(), np.zeros(2), np.zeros(1), units_from([], [])
-    found, _ = hold(
+    found, _ = ask_and_take_in(
         table, epochs, nobody, *graph.storage(), graph.size, changed, base_m, newest, told, sums, 6
     )
     return found, told

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from estimator.graph.kernels import eliminate, take_off
+from estimator.graph.chain_kernels import eliminate, take_off
 from estimator.graph.right_sides import carry, carry_back
-from tests.estimator.graph.test_kernels import BORDER, a_chain
+from tests.estimator.graph.test_chain_kernels import BORDER, a_chain
 
 RIGHT_SIDES = 5
 
@@ -22,7 +22,7 @@ def test_right_sides_carried_forth_and_back_are_solved(walks: int) -> None:
     eliminate(0, length, diagonal, link, wide)
     take_off(0, length, wide, corner, np.zeros(BORDER))
     carry(diagonal, link, wide, y, rest)
-    fixed = np.linalg.solve(corner, rest)
+    fixed = np.linalg.solve(corner, rest).astype(np.float64)
     carry_back(diagonal, link, wide, y, fixed)
 
     np.testing.assert_allclose(fixed, told[size:], rtol=1e-9)

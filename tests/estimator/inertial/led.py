@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from estimator.estimate import Notice
-from estimator.inertial.led import Led
+from estimator.inertial.displacement import InertialDisplacement
 from estimator.inertial.navigation import Navigation, navigate
 from estimator.inertial.samples import pieces
 from estimator.measurements.displacement import Displacement
@@ -32,7 +32,7 @@ def entered(t: float, heading_rad: float = 0.0) -> Node:
     )
 
 
-def followed(readings: list[Imu], heading_rad: float = 0.0) -> tuple[list[Led], list[str]]:
+def followed(readings: list[Imu], heading_rad: float = 0.0) -> tuple[list[InertialDisplacement], list[str]]:
     """The displacements that readings lead to, and what is said of them."""
     known: Navigation | None = None
     found, texts = [], []

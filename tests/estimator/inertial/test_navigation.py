@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from msgspec import structs
 from scipy.spatial.transform import Rotation
 
-from estimator.inertial.bridging import BRIDGED_S
-from estimator.inertial.crossing import CROSSED_S
-from estimator.inertial.holding import GYRO_SCALE_SIGMA
+from estimator.inertial.dropped_samples import BRIDGED_S
 from estimator.inertial.levelling import ALIGN_S
 from estimator.inertial.navigation import EACH_S, JITTER_MOST_S, navigate
 from estimator.inertial.record import navigation_of, record_of
 from estimator.inertial.samples import PIECE_S, pieces
+from estimator.inertial.short_gaps import CROSSED_S
 from estimator.inertial.strapdown import ATTITUDE_WALK
+from estimator.inertial.zupt import GYRO_SCALE_SIGMA
 from estimator.measurements.imu import Imu
 from tests.estimator.inertial.gait import AROUND, STEP_S, Stride, rolled, walked
 from tests.estimator.inertial.led import followed, true_m, unsure_m, where

@@ -13,11 +13,11 @@ from estimator.inertial.strapdown import (
     FORGOTTEN_PER_RAD,
     RATE_WALK,
     VELOCITY_WALK,
-    carry,
     correct,
-    freed,
-    mend,
-    stand,
+    propagate,
+    remove_errors,
+    without_biases,
+    zero_velocity_update,
 )
 from tests.estimator.inertial.gait import STEP_S, Stride, walked
 
@@ -37,8 +37,8 @@ def unsure(chance: np.random.Generator) -> Strapdown:
 def carried(boot: Strapdown, force: Array, rate: Array) -> None:
     sample = np.empty(6)
     for one, other in zip(force, rate, strict=True):
-        freed(boot, one, other, sample)
-        carry(boot, sample, GRAVITY_MPS2, ERRORS, STEP_S)
+        without_biases(boot, one, other, sample)
+        propagate(boot, sample, GRAVITY_MPS2, ERRORS, STEP_S)
 
 
 def test_the_covariance_of_errors_is_that_of_its_linear_model() -> None:
@@ -77,7 +77,7 @@ def test_a_small_error_leads_where_its_linear_model_says(state: int) -> None:
     told, true = Strapdown.new(), Strapdown.new()
     error = np.zeros(ERRORS)
     error[state] = size
-    mend(true, error)
+    remove_errors(true, error)
     told.covariance[:] = np.outer(error, error)
     for boot in (told, true):
         carried(boot, gait.force[SWING], gait.rate[SWING])
@@ -103,7 +103,7 @@ def test_what_is_told_of_a_state_is_taken_in_as_by_bayes() -> None:
 
 def test_who_stands_has_no_velocity() -> None:
     boot, error = unsure(np.random.default_rng(3)), np.zeros(ERRORS)
-    stand(boot, error, np.zeros(3), 1e-4)
-    mend(boot, error)
+    zero_velocity_update(boot, error, np.zeros(3), 1e-4)
+    remove_errors(boot, error)
     assert np.abs(boot.velocity).max() < 1e-3
     assert np.abs(boot.covariance[VELOCITY:ATTITUDE, VELOCITY:ATTITUDE]).max() < 1e-7

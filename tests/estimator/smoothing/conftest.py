@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from estimator.fusion.memory.ledger import BODY_BEARING, RSSI
-from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.newton import Problem
 from tests.estimator.smoothing.windows import fused, problem_of
 from tests.estimator.walks import two_responders
 

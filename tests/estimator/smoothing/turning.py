@@ -3,7 +3,7 @@
 import numpy as np
 
 from estimator.graph.dense import Array
-from estimator.graph.turning import turning
+from estimator.graph.gauge import turning
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node

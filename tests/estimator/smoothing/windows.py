@@ -12,13 +12,13 @@ from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.smoothing.chain.chain import Chain
-from estimator.smoothing.extent import spacing_s
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES
-from estimator.smoothing.problem.solve import Problem
-from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.whole import first_pass
+from estimator.smoothing.window_extent import spacing_s
 
 
 def entered(east_m: float = 0.0, north_m: float = 0.0, node: str = "ff1") -> Node:
@@ -42,7 +42,7 @@ def problem_of(state: FusionState, since_t: float | None = None, prior: Prior | 
     return Problem(layout, rows, prior)
 
 
-def at_rest(problem: Problem, x: Array, rest: float = 1e-11, share: float = 0.5) -> Solved:
+def at_rest(problem: Problem, x: Array, rest: float = 1e-11, share: float = 0.5) -> Solution:
     """The solution, iterated until nothing at all moves any more.
 
     Args:
@@ -81,7 +81,7 @@ def dense(chain: Chain) -> tuple[Array, Array]:
     return whole, chain.slope()
 
 
-def unlikelihood(problem: Problem, solved: Solved) -> float:
+def unlikelihood(problem: Problem, solved: Solution) -> float:
     """−log marginal likelihood up to a constant, at a given estimate: cost + ½ log |H| + ½ Σ log |Q|."""
     motions = problem.motions(solved.x)
     chain = problem.assemble(solved.x, solved.linear, solved.weighted, motions)

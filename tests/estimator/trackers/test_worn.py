@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from estimator.estimate import Vector3
-from estimator.fusion.entering.worn import RIGHT, Worn
+from estimator.fusion.entering.unit_mounting import RIGHT, Mounting
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
@@ -20,12 +20,12 @@ from tests.estimator.ellipses import outside
 from tests.estimator.trackers.entry import BASE, shown
 
 SECONDS, APART_M, CRUMBS = 120, 14.0, 5
-MIRRORED, QUARTER = Worn(True), Worn(False, 0.5 * math.pi)
+MIRRORED, QUARTER = Mounting(True), Mounting(False, 0.5 * math.pi)
 ALL = ("ff1", "ff2", "ff3")
 
 
 def entry(
-    worn: Worn, seed: int, names: tuple[str, ...] = ALL, powers: bool = False
+    worn: Mounting, seed: int, names: tuple[str, ...] = ALL, powers: bool = False
 ) -> tuple[list[AnyReading], dict[str, Array]]:
     """They walk from goal to goal, two drop breadcrumbs, all range or hear these; ff1's unit is worn so."""
     chance, readings = np.random.default_rng(seed), list[AnyReading]([BASE])
@@ -81,7 +81,9 @@ def followed(readings: list[AnyReading], way: dict[str, Array]) -> tuple[dict[st
 
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("worn", [MIRRORED, QUARTER])
-def test_a_unit_worn_the_wrong_way_round_is_found_and_no_good_one_is_blamed(worn: Worn, seed: int) -> None:
+def test_a_unit_worn_the_wrong_way_round_is_found_and_no_good_one_is_blamed(
+    worn: Mounting, seed: int
+) -> None:
     """Its bearer walks for some ten seconds before there is anything to hear."""
     wrong, said = followed(*entry(worn, seed))
     assert wrong["ff1"] < 30
@@ -117,7 +119,7 @@ def test_powers_alone_leave_it_open_how_a_unit_is_worn(seed: int) -> None:
 
 
 @pytest.mark.parametrize("worn", [MIRRORED, QUARTER])
-def test_the_smoothed_way_of_who_wears_a_unit_wrongly_is_right_from_its_beginning(worn: Worn) -> None:
+def test_the_smoothed_way_of_who_wears_a_unit_wrongly_is_right_from_its_beginning(worn: Mounting) -> None:
     readings, way = entry(worn, 0)
     for name, track in BatchSmoother().smooth(readings).items():
         off_m = [math.dist(p.position_m[:2], way[name][round(p.t)]) for p in track if name in way]

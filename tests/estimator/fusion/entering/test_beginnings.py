@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from estimator.fusion.entering.introduce import initial_turn
-from estimator.fusion.entering.modes import Sought, find_modes
+from estimator.fusion.entering.modes import UndecidedNode, find_modes
 from estimator.graph.dense import Array
 
 
-def sought(points: Array, target: Array) -> Sought:
+def sought(points: Array, target: Array) -> UndecidedNode:
     chance = np.random.default_rng(4)
     distance = np.linalg.norm(points - target, axis=1) + chance.normal(0.0, 0.1, len(points))
-    return Sought(
+    return UndecidedNode(
         kind="range",
         points=points,
         value=distance,

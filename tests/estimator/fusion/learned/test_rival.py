@@ -7,7 +7,7 @@ import pytest
 
 from estimator.fusion.learned import rival
 from estimator.fusion.learned.rival import Link, Rival
-from estimator.fusion.motion.free import free_motion
+from estimator.fusion.motion.constant_velocity import free_motion
 from estimator.graph.dense import Array
 
 PLANE = [0, 1, 3, 4]
@@ -31,7 +31,7 @@ def heard(link: int, t: float, place_m: Array, off_db: float = 0.0) -> list[floa
 def test_it_goes_on_as_who_has_no_unit() -> None:
     state, covariance = np.array([3.0, -2.0, 1.0, 0.5]), np.diag([0.4, 0.3, 0.2, 0.1])
     transition, noise = (matrix[np.ix_(PLANE, PLANE)] for matrix in free_motion("responder", 2.5))
-    moved, unsure = rival.gone_on(state, covariance, 2.5)
+    moved, unsure = rival.predicted(state, covariance, 2.5)
     np.testing.assert_allclose(moved, transition @ state)
     np.testing.assert_allclose(unsure, transition @ covariance @ transition.T + noise)
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from estimator.fusion.memory.absolute import Absolute, Alike
+from estimator.fusion.memory.absolute import Absolute, SharedError
 
 SIGMA_M = 3.0
 
@@ -18,7 +18,7 @@ def told(rate_hz: float, span_s: float, memory_s: float, shared: float) -> tuple
     Exactly: 1ᵀ C⁻¹ 1, with the covariance C of an error that is forgotten exponentially, and white noise.
     """
     t = np.arange(0.0, span_s, 1.0 / rate_hz)
-    alike, information = Alike(), 0.0
+    alike, information = SharedError(), 0.0
     for epoch in t.tolist():
         alike = alike.with_one(epoch, 0.0, memory_s)
         information += alike.sigma(SIGMA_M, shared) ** -2
@@ -48,12 +48,12 @@ def test_an_error_that_stays_is_never_averaged_away() -> None:
 
 
 def test_a_single_reading_is_worth_itself() -> None:
-    assert Alike().with_one(5.0, 0.0, 60.0).sigma(SIGMA_M, 0.5) == pytest.approx(SIGMA_M)
+    assert SharedError().with_one(5.0, 0.0, 60.0).sigma(SIGMA_M, 0.5) == pytest.approx(SIGMA_M)
 
 
 def test_who_has_gone_on_has_left_the_error_behind() -> None:
-    standing = Alike().with_one(0.0, 0.0, 60.0, 10.0).with_one(1.0, 0.0, 60.0, 10.0)
-    gone_on = Alike().with_one(0.0, 0.0, 60.0, 10.0).with_one(1.0, 50.0, 60.0, 10.0)
+    standing = SharedError().with_one(0.0, 0.0, 60.0, 10.0).with_one(1.0, 0.0, 60.0, 10.0)
+    gone_on = SharedError().with_one(0.0, 0.0, 60.0, 10.0).with_one(1.0, 50.0, 60.0, 10.0)
     assert gone_on.sigma(SIGMA_M, 0.5) == pytest.approx(SIGMA_M, rel=0.02)
     assert standing.sigma(SIGMA_M, 0.5) > 1.6 * SIGMA_M
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from estimator.fusion.learned.links import ECHO_M, NEW, T, follow
-from estimator.fusion.motion.way import DECIDED, OUTSIDE, STATES, End
+from estimator.fusion.learned.link_correlation import ECHO_M, NEW, T, follow
+from estimator.fusion.motion.recent_places import DECIDED, OUTSIDE, STATES, TrailEnd
 from estimator.fusion.physics import ECHO_LOWER_S, ECHO_UNHEARD_S, ECHOES, FLIES_MPS, RANGE_NOISE, RUNS_MPS
 from estimator.fusion.readings.echoes import SIGMAS, farthest_m, fit, hear, noise, tell
 from estimator.graph.dense import Array
@@ -98,7 +98,7 @@ def test_an_echo_whose_end_was_not_heard_ends_when_its_ranges_fit_again() -> Non
 
 
 def end(moves: bool, decided: bool = True, outside: bool = False) -> Array:
-    found = np.zeros(len(End._fields))
+    found = np.zeros(len(TrailEnd._fields))
     found[STATES], found[DECIDED], found[OUTSIDE] = 3.0 if moves else -1.0, decided, outside
     return found
 

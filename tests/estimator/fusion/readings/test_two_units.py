@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.fusion.readings.test_boots import BEGINS, GAIT, START_T, incident, shown, truth_m
+from tests.estimator.fusion.readings.test_raw_samples import BEGINS, GAIT, START_T, incident, shown, truth_m
 
 
 @pytest.mark.parametrize("begun", [True, False], ids=["since the last one", "with a beginning"])

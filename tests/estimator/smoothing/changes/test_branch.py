@@ -15,7 +15,7 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.measurements.retire import Retire
 from estimator.smoothing.changes.branch import branch, reunite
-from estimator.smoothing.changes.moved import Moved
+from estimator.smoothing.changes.moved_nodes import MovedNode
 from tests.estimator.smoothing.windows import fused
 
 TURNED_S = 30.0
@@ -47,7 +47,7 @@ def test_where_readings_put_it_last_is_taken_back(found: bool) -> None:
     state = walked()
     before, pairs = state.nodes["b1"], state.ledger.table("pairs").copy()
     stands = state.ledger.table("stands").copy()
-    branch(state, Moved("b1", TURNED_S, 25))
+    branch(state, MovedNode("b1", TURNED_S, 25))
     if found:
         place(state, state.nodes["b1"], 60.0, (15.0, 3.0, 0.0), WIDE_M)
     assert len(numbers_of(state)) == 2
@@ -63,10 +63,10 @@ def test_where_readings_put_it_last_is_taken_back(found: bool) -> None:
 def test_of_two_places_only_the_last_is_taken_back() -> None:
     """Nobody would ask again about the first."""
     state = walked()
-    branch(state, Moved("b1", TURNED_S, 25))
+    branch(state, MovedNode("b1", TURNED_S, 25))
     second = state.nodes["b1"].index
     place(state, state.nodes["b1"], 45.0, (12.0, 3.0, 0.0), WIDE_M)
-    branch(state, Moved("b1", 45.0, 15))
+    branch(state, MovedNode("b1", 45.0, 15))
     assert reunite(state)
     assert state.nodes["b1"].index == second
     assert len(numbers_of(state)) == 2
@@ -78,7 +78,7 @@ def test_what_was_dropped_or_placed_anew_lies_there() -> None:
         Node(t=40.0, node="b1", role="breadcrumb", position_m=(20.0, 1.0, 0.0), sigma_m=0.1),
     ):
         state = walked()
-        branch(state, Moved("b1", TURNED_S, 25))
+        branch(state, MovedNode("b1", TURNED_S, 25))
         fold_tick(state, 62.0, [again])
         numbers, index = numbers_of(state), state.nodes["b1"].index
         assert not reunite(state)
@@ -87,13 +87,13 @@ def test_what_was_dropped_or_placed_anew_lies_there() -> None:
 
 def test_who_has_been_retired_or_moves_by_itself_since_is_asked_no_more() -> None:
     state = walked()
-    branch(state, Moved("b1", TURNED_S, 25))
+    branch(state, MovedNode("b1", TURNED_S, 25))
     numbers = numbers_of(state)
     retire(state, Retire(t=61.0, node="b1"))
     assert not reunite(state)
     assert numbers_of(state) == numbers
     state = walked()
-    branch(state, Moved("b1", TURNED_S, 25))
+    branch(state, MovedNode("b1", TURNED_S, 25))
     fold_tick(state, 62.0, [Node(t=61.0, node="b1", role="responder", position_m=(9.0, 0.0, 0.0))])
     assert not reunite(state)
 
@@ -107,7 +107,7 @@ def test_what_jumped_when_it_was_moved_was_no_echo() -> None:
     pairs = state.ledger.table("pairs").copy()
     pairs[:, ECHO] = 3.0
     state.ledger.replace("pairs", pairs)
-    branch(state, Moved("b1", TURNED_S, 25))
+    branch(state, MovedNode("b1", TURNED_S, 25))
     pairs = state.ledger.table("pairs")
     since = pairs[:, 0] >= TURNED_S
     assert (pairs[since, ECHO] == 0.0).all()

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from estimator.graph.dense import Array
-from estimator.smoothing.images.flips import Flip
+from estimator.smoothing.images.flip_ambiguity import Flip
+from estimator.smoothing.images.heading_images import facing, turn
 from estimator.smoothing.images.parts import Parts
-from estimator.smoothing.images.turns import facing, turn
-from estimator.smoothing.keyframes.numbers import Numbers
-from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.keyframes.unknowns import Unknowns
+from estimator.smoothing.problem.newton import Problem
 from tests.estimator.smoothing.problem.test_marginals import window_from
 from tests.estimator.smoothing.windows import fused, problem_of
 from tests.estimator.walks import two_responders
@@ -31,7 +31,7 @@ def pulled(problem: Problem, x: Array) -> Array:
     return problem.assemble(x, linear, problem.weigh(linear.residual), problem.motions(x)).slope()
 
 
-def led(problem: Problem, moving: int) -> tuple[Array, Array, Problem, Numbers]:
+def led(problem: Problem, moving: int) -> tuple[Array, Array, Problem, Unknowns]:
     """Where one walk rests by itself that begins 0.3 m off, and where it began; its part."""
     layout, x = problem.layout, problem.layout.start()
     layout.states(x, moving)[1:, :2] += 0.3

@@ -12,15 +12,15 @@ from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.measurements.rssi import Rssi
 from estimator.smoothing.images import solutions
-from estimator.smoothing.images.flips import Flip
-from estimator.smoothing.images.likeliest import Judged, likeliest
+from estimator.smoothing.images.flip_ambiguity import Flip
+from estimator.smoothing.images.image_starts import ImageEnd, ImageSolution, ImageStart, Subject
+from estimator.smoothing.images.likeliest_image import JudgedImages, likeliest_image
+from estimator.smoothing.images.local_solution import is_law, local_solution
 from estimator.smoothing.images.parts import Parts
-from estimator.smoothing.images.reached import is_law, reached
-from estimator.smoothing.images.tried import Asked, Begun, Led, Tried
-from estimator.smoothing.problem.solve import Problem
-from estimator.smoothing.problem.solved import Solved
-from tests.estimator.smoothing.images.test_among import DBM, EXPONENT, SECONDS, SIGMA_DB, stroll
-from tests.estimator.smoothing.images.test_flips import solved_of
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+from tests.estimator.smoothing.images.test_flip_ambiguity import solved_of
+from tests.estimator.smoothing.images.test_near_radios import DBM, EXPONENT, SECONDS, SIGMA_DB, stroll
 
 SEEDS = range(4)
 
@@ -28,7 +28,7 @@ SEEDS = range(4)
 class Told(NamedTuple):
     """What is known of everybody's images, and how many were solved with everything."""
 
-    judged: Judged
+    judged: JudgedImages
     solved: int
 
 
@@ -50,7 +50,7 @@ def side_by_side(seed: int) -> list[AnyReading]:
     return readings
 
 
-def off_m(judged: Judged, seed: int) -> list[float]:
+def off_m(judged: JudgedImages, seed: int) -> list[float]:
     """How far off the two are, root mean square (m)."""
     layout, found = judged.problem.layout, []
     at = np.clip(layout.grid.astype(int) - 1, 0, SECONDS - 1)
@@ -64,15 +64,15 @@ def told(monkeypatch: pytest.MonkeyPatch, seed: int, alone: float) -> Told:
     """What is told where images that cost so much more, with all others held, are given up."""
     count = 0
 
-    def counted(problem: Problem, x: Array, slacks_m: tuple[float, ...], known: Solved) -> Solved | None:
+    def counted(problem: Problem, x: Array, slacks_m: tuple[float, ...], known: Solution) -> Solution | None:
         nonlocal count
         count += 1
-        return reached(problem, x, slacks_m, known)
+        return local_solution(problem, x, slacks_m, known)
 
     with monkeypatch.context() as patch:
         patch.setattr(solutions, "ALONE", alone)
-        patch.setattr(solutions, "reached", counted)
-        return Told(likeliest(*solved_of(two(seed))), count)
+        patch.setattr(solutions, "local_solution", counted)
+        return Told(likeliest_image(*solved_of(two(seed))), count)
 
 
 def test_fewer_are_solved_as_a_whole_and_everybody_is_where_he_is(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -86,7 +86,7 @@ def test_fewer_are_solved_as_a_whole_and_everybody_is_where_he_is(monkeypatch: p
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_law_that_is_nearly_flat_leads_nobody_on_top_of_strong_radios(seed: int) -> None:
     """By an exponent of 0.3 it fits 50 better, in log likelihood, and they were 5 to 7 m off."""
-    judged = likeliest(*solved_of(side_by_side(seed)))
+    judged = likeliest_image(*solved_of(side_by_side(seed)))
     assert is_law(judged.problem.layout, judged.solved.x)
     assert max(off_m(judged, seed)) < 4.0
 
@@ -98,16 +98,16 @@ def test_what_leads_nearest_is_solved_first_however_far_off_it_began(monkeypatch
     for k, east_m in enumerate((40.0, -40.0)):
         x = solved.x.copy()
         problem.layout.states(x, 0)[:, 0] += east_m
-        starts.append(Begun(x, Flip(5 * k, Image())))
-    asked, tried = Asked(problem, 0, whole=False), list[float]()
+        starts.append(ImageStart(x, Flip(5 * k, Image())))
+    asked, tried = Subject(problem, 0, whole=False), list[float]()
 
-    def led(_: Asked, __: Parts, ___: Tried, start: Begun, ____: bool) -> Led:
-        return Led(start, 8.0 - start.flip.since)
+    def led(_: Subject, __: Parts, ___: ImageSolution, start: ImageStart, ____: bool) -> ImageEnd:
+        return ImageEnd(start, 8.0 - start.flip.since)
 
     def noted(_: Problem, x: Array, *__: object) -> None:
         tried.append(float((x - solved.x)[0]))
 
     monkeypatch.setattr(solutions, "_led", led)
-    monkeypatch.setattr(solutions, "reached", noted)
+    monkeypatch.setattr(solutions, "local_solution", noted)
     solutions.solutions(asked, Parts(problem, solved.x), solved, starts, 1)
     assert tried == [pytest.approx(-40.0)]

@@ -11,8 +11,8 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.smoothing.learning.delays import delays, doubted, judged
 from estimator.smoothing.learning.radios import Delay
-from estimator.smoothing.problem.solve import Problem
-from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.whole import SLACKS_M
 from tests.estimator.smoothing.windows import fused, problem_of
 
@@ -41,13 +41,13 @@ def round_the_vehicle(seed: int, delay_m: float) -> list[AnyReading]:
     return readings
 
 
-def at_rest(readings: list[AnyReading]) -> tuple[Problem, Solved]:
+def at_rest(readings: list[AnyReading]) -> tuple[Problem, Solution]:
     problem = problem_of(fused(readings))
     begun = problem.solve(problem.layout.start(), SLACKS_M)
     return problem, problem.solve(begun.x)
 
 
-def told(problem: Problem, solved: Solved, farther_m: float) -> tuple[list[Delay], float]:
+def told(problem: Problem, solved: Solution, farther_m: float) -> tuple[list[Delay], float]:
     """What is said with him somewhat farther from the vehicle than he is, and what is left to be gained."""
     x = solved.x.copy()
     states = problem.layout.states(x, 0)

@@ -17,7 +17,7 @@ from estimator.graph.dense import Array, Indices
 from estimator.measurements import AnyReading
 from estimator.simulate import paper_a
 from estimator.smoothing.keyframes.walks import STATES
-from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.whole import SLACKS_M
 from tests.estimator.smoothing.windows import fused, problem_of
 from tests.estimator.walks import two_responders

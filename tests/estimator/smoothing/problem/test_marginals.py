@@ -16,8 +16,8 @@ from estimator.measurements.position import Position
 from estimator.smoothing.chain.chain import Chain
 from estimator.smoothing.chain.groups import Groups
 from estimator.smoothing.keyframes.walks import STATES
-from estimator.smoothing.problem.solve import Problem
-from estimator.smoothing.problem.solved import Solved
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
 from tests.estimator.smoothing.chains import SHAPES, Shape, alone, groups_of, random_chain
 from tests.estimator.smoothing.windows import at_rest, dense, fused, problem_of
 from tests.estimator.walks import two_responders
@@ -99,7 +99,7 @@ def test_groups_are_what_direct_readings_couple() -> None:
     assert [part.tolist() for part in placed.parts] == [[0, 1], [2], [3]]
 
 
-def prior_at(problem: Problem, solved: Solved, cut: int) -> Prior:
+def prior_at(problem: Problem, solved: Solution, cut: int) -> Prior:
     """What the keyframes before one say of it and of the border."""
     layout = problem.layout
     chain = problem.assemble(solved.x, solved.linear, solved.weighted, solved.motions, cut)
@@ -127,7 +127,7 @@ def from_cut(problem: Problem, x: Array, cut: int) -> Array:
     return x[cut * problem.layout.width :]
 
 
-def assert_same_from_cut(whole: Problem, at: Solved, cut: int, window: Problem, again: Solved) -> None:
+def assert_same_from_cut(whole: Problem, at: Solution, cut: int, window: Problem, again: Solution) -> None:
     """Estimates and covariances after the cut, of both Problems and one more step of theirs, are the same."""
     assert window.layout.grid == pytest.approx(whole.layout.grid[cut:])
     steps, fixed = at.chain.solve()
@@ -143,7 +143,7 @@ def assert_same_from_cut(whole: Problem, at: Solved, cut: int, window: Problem, 
     assert np.abs((found[2] - right[2]) / lasting[:, None] / lasting).max(initial=0.0) < 1e-6
 
 
-def window_from(whole: Problem, at: Solved, cut: int) -> Problem:
+def window_from(whole: Problem, at: Solution, cut: int) -> Problem:
     """The window from a keyframe on, with what the keyframes before it leave."""
     return problem_of(whole.layout.state, float(whole.layout.grid[cut]), prior_at(whole, at, cut))
 

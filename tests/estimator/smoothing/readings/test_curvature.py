@@ -10,7 +10,7 @@ from estimator.graph.dense import Array
 from estimator.graph.robust import Weighted
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
-from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.newton import Problem
 from tests.estimator.smoothing.windows import dense, difference, random_state
 
 

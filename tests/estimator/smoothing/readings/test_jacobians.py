@@ -11,10 +11,10 @@ from estimator.fusion import physics
 from estimator.fusion.memory.ledger import BODY_BEARING, RANGE, RSSI
 from estimator.graph.dense import Array
 from estimator.measurements import bearing
+from estimator.smoothing.keyframes.displacement_sums import Way
 from estimator.smoothing.keyframes.ends import ends_of, ground_of, place_ends
 from estimator.smoothing.keyframes.walks import STATES, Motion, free_motions, led_by, unit_motion
-from estimator.smoothing.keyframes.ways import Way
-from estimator.smoothing.problem.solve import Problem
+from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.readings.rows import Rows
 from tests.estimator.smoothing.windows import difference, random_state
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.graph.kernels import Integers
 from estimator.smoothing.readings.obstructed import Excess, excess
 from tests.estimator.smoothing.windows import fused, problem_of
 from tests.estimator.walks import behind_a_wall

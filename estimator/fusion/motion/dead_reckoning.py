@@ -1,0 +1,159 @@
+"""How nodes with a PDR unit move between ticks: by its displacements, or unseen in a silence."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from msgspec.structs import replace
+from numba import njit
+
+from estimator.estimate import Vector3
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m
+from estimator.fusion.motion.recent_places import Mark
+from estimator.fusion.motion.silence import SILENT_S
+from estimator.fusion.motion.steps import Noise, Step, sum_of, unseen_noise
+from estimator.graph.dense import Array, Indices
+from estimator.graph.filter_kernels import advance
+from estimator.measurements.displacement import move
+
+FLOOR = (1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12)
+STOOD: Vector3 = (0.0, 0.0, 0.0)
+
+
+def advance_units(state: FusionState, steps: Sequence[Step]) -> None:
+    """One transition for all units that have moved in a tick, by what their displacements add up to."""
+    advance_by(state, [(s.node, s.delta_m, s.duration_s, s.noise) for s in steps])
+
+
+def advance_by(state: FusionState, moves: Sequence[tuple[NodeState, Vector3, float, Noise]]) -> None:
+    """One transition for units.
+
+    Args:
+        state: the fusion: its graph is changed.
+        moves: of each unit its node, displacement in its frame (m), time (s) and variances that it adds.
+    """
+    graph, starts = state.graph, state.graph.starts
+    told = [
+        (starts[node.position], starts[node.unit], *delta_m, duration_s, *sum_of(noise, FLOOR))
+        for node, delta_m, duration_s, noise in moves
+    ]
+    rows = np.empty(6 * len(told), dtype=np.intp)
+    kernel = np.empty((len(rows), len(rows)))
+    if not walk(np.array(told), *graph.storage(), graph.size, rows, kernel):
+        graph.loosen(rows, kernel)
+
+
+@njit(cache=True, nogil=True)
+def walk(
+    steps: Array, matrix: Array, vector: Array, reference: Array, n: int, rows: Indices, kernel: Array
+) -> bool:
+    """Steps of units as one transition of the Kirchhoff state, see `Kirchhoff.advance`.
+
+    Args:
+        steps: as `walked` takes them, g × 12.
+        matrix: L, n × n or larger, changed.
+        vector: b, as long, changed.
+        reference: x, as long, changed.
+        n: rows in use.
+        rows: takes the rows that move, 6 g.
+        kernel: takes Q⁻¹ + Eᵀ A E, 6 g × 6 g.
+
+    Returns:
+        False where that is not positive definite: `Kirchhoff.loosen` is still to be done.
+    """
+    blocks, moved, transition, noise = walked(steps, reference[:n])
+    done, found = advance(matrix, vector, n, blocks, transition, noise)
+    kernel[:] = found
+    for i in range(len(blocks)):
+        for c in range(6):
+            rows[6 * i + c] = blocks[i, c]
+            reference[blocks[i, c]] = moved[i, c]
+    return done
+
+
+@njit(cache=True)
+def walked(steps: Array, x: Array) -> tuple[Indices, Array, Array, Array]:
+    """What steps make of the blocks of their units, as `Kirchhoff.advance` takes it.
+
+    Args:
+        steps: where each unit's position and its errors start; displacement in its frame (m), time (s), and
+            the variances of its six numbers, g × 12.
+        x: the reference of the graph, n.
+    """
+    g = len(steps)
+    rows, states, noise = np.empty((g, 6), dtype=np.intp), np.empty((g, 6)), np.zeros((g, 6, 6))
+    for i in range(g):
+        for c in range(6):
+            rows[i, c] = int(steps[i, c // 3]) + c % 3
+            states[i, c], noise[i, c, c] = x[rows[i, c]], steps[i, 6 + c]
+    moved = move(states, steps[:, 2:5], steps[:, 5])
+    return rows, moved.state, moved.transition, noise
+
+
+def go_on(state: FusionState, until: Mapping[str, float]) -> None:
+    """Let bearers go on as they went, up to epochs that their units' displacements do not cover yet.
+
+    Of who has been silent nobody knows how he goes: he is left to `drift_units`.
+
+    Args:
+        state: the fusion.
+        until: the epoch, by node.
+    """
+    steps = []
+    for name, t in until.items():
+        node = state.nodes[name]
+        if node.mode != "unit" or node.pose_t != node.unit_t or len(node.trail) < 2:
+            continue
+        if node.pose_t < t <= node.pose_t + SILENT_S:
+            step = Step(node)
+            step.go_on(t)
+            steps.append(step)
+    if steps:
+        advance_units(state, steps)
+    for step in steps:
+        state.nodes[step.node.node] = step.after()
+
+
+def was_silent(node: NodeState) -> bool:
+    """Whether a unit has reported nothing for some time up to where its node is now."""
+    return node.unit_t is None or node.pose_t > node.unit_t + SILENT_S
+
+
+def drift_units(state: FusionState, until: Mapping[str, float], onward: bool = False) -> None:
+    """Units have not reported up to an epoch at which something else is to be held against their position.
+
+    Their bearers go on as they went for a moment; they may have stood or walked (`silence.unheard_m2`). A
+    displacement that comes later counts for the part of its time that is left.
+
+    Args:
+        state: the fusion.
+        until: the epoch, by unit.
+        onward: nothing is heard of them: what is tells where they go, and nothing of their headings.
+    """
+    moves = []
+    for name, t in until.items():
+        node = state.nodes[name]
+        since_s = math.inf if node.unit_t is None else node.pose_t - node.unit_t
+        if since_s < SILENT_S <= since_s + t - node.pose_t:
+            # From now on ranges alone tell where he goes.
+            state.suspected = True
+        span_s, missed_s = t - node.pose_t, node.missed_s
+        noise = unseen_noise(span_s, since_s)
+        # What is heard of him meanwhile tells how he goes on: then nothing is missed all along.
+        untold_m2 = missed_m2(span_s, missed_s, node.raw) if since_s == 0.0 else 0.0
+        delta_m, trail = STOOD, tuple[Mark, ...]()
+        if onward and since_s + span_s <= SILENT_S and len(node.trail) > 1:
+            delta_m = onward_m(node.trail, span_s, since_s)
+            trail = (*node.trail, mark_after(node.trail[-1], t, delta_m))
+        across, _, up, turn, bias, scale = noise
+        across = max(across, untold_m2)
+        step = (*delta_m, across, up, turn, bias, scale, 1.0)
+        state.ledger.add("steps", t, node.index, node.pose_t, *step)
+        moves.append((node, delta_m, span_s, (across, across, up, turn, bias, scale)))
+        state.nodes[name] = replace(
+            node, pose_t=t, trail=trail, missed_s=missed_s + (span_s if since_s == 0.0 else 0.0)
+        )
+    # His unit's frame turns on, whether it reports or not.
+    advance_by(state, moves)

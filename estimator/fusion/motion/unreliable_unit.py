@@ -1,0 +1,154 @@
+"""A unit that is no good is doubted: what is told of its bearer holds two ways.
+
+Where ranges, or powers of who is not ranged, speak against the way of a unit and for its rival
+(`learned.rival`), the covariance holds the rival's place by how likely it is. The unit is followed all the
+same: it may be a clock that is off, or a radio that is not on him.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from msgspec.structs import replace
+
+from estimator.fusion import physics
+from estimator.fusion.learned.noise import LearnedNoise
+from estimator.fusion.learned.rival import MEMORY_S, RARE, Link, Rival
+from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER
+from estimator.fusion.memory.nodes import NodeState
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.silence import SILENT_S
+from estimator.fusion.rows.rival_kernels import ASKED_T, NONE, RivalUpdate, Units, units_from
+from estimator.fusion.rows.rows import KIND
+from estimator.graph.dense import Array
+
+CLEAR = 4.0
+"""Log odds from which on it is said that ranges contradict a unit: 50 to 1."""
+SPOKEN = 0.5
+"""So much more than nothing (log odds) speaks against a unit that powers are asked on."""
+
+
+class QuestionedUnits(NamedTuple):
+    """Of whom a tick's ranges, or powers, are asked.
+
+    Attributes:
+        nodes: all who have a unit.
+        told: the same as numbers.
+    """
+
+    nodes: list[NodeState]
+    told: Units
+
+
+NOBODY = QuestionedUnits([], units_from([], []))
+
+
+def ask(state: FusionState, table: Array) -> QuestionedUnits:
+    """Of whom to ask a tick's ranges, or powers, whose ways foretell them.
+
+    Args:
+        state: the fusion; who is not asked about any more loses his rival.
+        table: of the tick's readings, see `rows.Row`.
+    """
+    nodes = [node for node in state.nodes.values() if node.mode == "unit"]
+    if not nodes or not len(table):
+        return NOBODY
+    powers = _asked_by_powers(state, nodes)
+    if not any(powers) and not (table[:, KIND] == RANGE).any():
+        return NOBODY
+    asked_t = [node.pose_t if _asked(node) else math.nan for node in nodes]
+    # Where nobody is asked about there is something to do only for who was.
+    if all(map(math.isnan, asked_t)) and all(node.rival is None for node in nodes):
+        return NOBODY
+    rows, links = [], []
+    for i, (node, t, by_powers) in enumerate(zip(nodes, asked_t, powers, strict=True)):
+        rival, start = node.rival, state.graph.starts[node.position]
+        if rival is None:
+            rows.append((start, t, by_powers, *NONE))
+            continue
+        known = (rival.t, *rival.state, *rival.covariance, rival.odds, rival.ranged_t)
+        rows.append((start, t, by_powers, *known))
+        links += [(i, link.number, link.t, link.gain) for link in rival.links]
+    return QuestionedUnits(nodes, units_from(rows, links))
+
+
+def answer(state: FusionState, asked: QuestionedUnits, found: RivalUpdate) -> None:
+    """Take down the rivals that a tick's readings have told of.
+
+    Args:
+        state: the fusion: takes them.
+        asked: of whom they were asked.
+        found: what has come of it.
+    """
+    if not found.heard:
+        return
+    for node, asked_t, rival in zip(
+        asked.nodes, asked.told.rows[:, ASKED_T].tolist(), _rivals(found.rivals, found.links), strict=True
+    ):
+        if math.isnan(asked_t) and node.rival is not None:
+            state.nodes[node.node] = replace(node, rival=None)
+        if rival is None:
+            continue
+        state.nodes[node.node] = replace(node, rival=rival)
+        if rival.odds > CLEAR and (node.rival is None or node.rival.odds <= CLEAR):
+            by = "powers" if math.isinf(rival.ranged_t) else "ranges"
+            text = f"{by} contradict the unit of {node.node}: it may be worn wrongly, or by another"
+            state.say("outlier", node.pose_t, node.node, text)
+
+
+def _asked(node: NodeState) -> bool:
+    """Whether a unit leads its bearer, and one place is all that it may have led him to."""
+    if (
+        node.turned
+        or not all(other.by_unit for other in node.otherwise)
+        or node.apart is not None
+        or node.unit_t is None
+    ):
+        return False
+    return node.pose_t <= node.unit_t + SILENT_S
+
+
+def _asked_by_powers(state: FusionState, units: list[NodeState]) -> list[bool]:
+    """Of which units powers are asked; a rival that only powers told of is forgotten where they are not."""
+    known = [state.noise[name] for name in state.noise if name.startswith(UNTOLD_POWER)]
+    if not known:
+        return [False] * len(units)
+    odd = any(_odd(noise) for noise in known)
+    powers = [_by_powers(node, odd) for node in units]
+    for i, node in enumerate(units):
+        if node.rival is not None and math.isinf(node.rival.ranged_t) and not powers[i]:
+            state.nodes[node.node] = units[i] = replace(node, rival=None)
+    return powers
+
+
+def _odd(noise: LearnedNoise) -> bool:
+    """Whether powers are off by more, or more alike, than was assumed: a bad unit makes them so, or walls."""
+    factor, shared, _ = noise.terms(0.0)
+    return factor > 1.0 or shared > physics.SHARED_NOISE
+
+
+def _by_powers(node: NodeState, odd: bool) -> bool:
+    """Whether powers are asked of a unit: nobody has ranged its bearer lately.
+
+    Args:
+        node: the unit's.
+        odd: see `_odd`: of powers that are as they were assumed to be nothing is to be learned.
+    """
+    known = node.rival
+    if known is None:
+        return odd
+    unranged = node.pose_t > known.ranged_t + MEMORY_S
+    return unranged and (odd or known.odds > RARE + SPOKEN)
+
+
+def _rivals(found: Array, tell: Array) -> Iterator[Rival | None]:
+    """The rivals that rows of `followed` are of; None: no reading tells of the unit."""
+    links: dict[float, list[Link]] = {}
+    for unit, number, t, gain in tell.tolist():
+        links.setdefault(unit, []).append(Link(int(number), t, gain))
+    for unit, (until_t, *numbers, odds, ranged_t) in enumerate(found.tolist()):
+        told = tuple(links.get(unit, ()))
+        if math.isnan(until_t):
+            yield None
+        else:
+            yield Rival(until_t, tuple(numbers[:4]), tuple(numbers[4:]), told, odds, ranged_t)

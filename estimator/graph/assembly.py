@@ -1,0 +1,205 @@
+"""Rows of readings and motions added to the blocks of a chain, compiled."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from estimator.graph.chain_kernels import Integers
+from estimator.graph.dense import Array
+
+
+@njit(cache=True)
+def couple(columns: Integers, width: int, size: int, label: Integers, touched: NDArray[np.bool_]) -> None:
+    """Give blocks that share a row one label, the lowest of theirs, and tell what each touches of the border.
+
+    Args:
+        columns: which numbers each row depends on, m × c: those of a keyframe first (below `width`), those of
+            the border after them; −1: unused.
+        width: columns of a keyframe, in blocks of `size`.
+        size: columns of a block.
+        label: of each block, changed.
+        touched: blocks × s, changed: of one block of a row that has several.
+    """
+    m, most = columns.shape
+    for r in range(m):
+        first = -1
+        for a in range(most):
+            if 0 <= columns[r, a] < width:
+                block = columns[r, a] // size
+                if first < 0:
+                    first = block
+                elif label[block] != label[first]:
+                    low, high = min(label[block], label[first]), max(label[block], label[first])
+                    for i in range(len(label)):
+                        if label[i] == high:
+                            label[i] = low
+        if first >= 0:
+            for a in range(most):
+                if columns[r, a] >= width:
+                    touched[first, columns[r, a] - width] = True
+
+
+@njit(cache=True)
+def localise(
+    columns: Integers, width: int, size: int, group_of: Integers, place: Integers
+) -> tuple[Integers, Integers, Integers]:
+    """Columns of rows in the numbering of their groups, and which rows are of each group.
+
+    Args:
+        columns: as `couple` takes them.
+        width: columns of a keyframe.
+        size: columns of a block.
+        group_of: group of each block.
+        place: column of each group's numbering, groups × all columns; what touches nothing that moves is of
+            the last group.
+
+    Returns:
+        The columns, m × c; the rows, group after group and in order, m; where each group begins among these,
+        and where the last one ends, groups + 1.
+    """
+    m, most = columns.shape
+    found, group = np.full((m, most), -1, dtype=np.int64), np.full(m, len(place) - 1)
+    ends = np.zeros(len(place) + 1, dtype=np.int64)
+    for r in range(m):
+        for a in range(most):
+            if 0 <= columns[r, a] < width:
+                group[r] = group_of[columns[r, a] // size]
+                break
+        for a in range(most):
+            if columns[r, a] >= 0:
+                found[r, a] = place[group[r], columns[r, a]]
+        ends[group[r] + 1] += 1
+    for g in range(len(place)):
+        ends[g + 1] += ends[g]
+    order, following = np.empty(m, dtype=np.int64), ends.copy()
+    for r in range(m):
+        order[following[group[r]]] = r
+        following[group[r]] += 1
+    return found, order, ends
+
+
+@njit(cache=True, nogil=True)
+def scatter_rows(
+    chosen: Integers,
+    slab: Integers,
+    columns: Integers,
+    jacobian: Array,
+    information: Array,
+    residual: Array,
+    diagonal: Array,
+    wide: Array,
+    corner: Array,
+    corner_gradient: Array,
+) -> None:
+    """Add HᵀP⁻¹H and HᵀP⁻¹r of some of m rows to a chain.
+
+    Args:
+        chosen: the rows to be added.
+        slab: keyframe of each row, m; any where it touches none.
+        columns: which numbers each row depends on, m × c: those of the keyframe first (below its width),
+            those of the border after them; −1: unused.
+        jacobian: derivatives, m × c.
+        information: P⁻¹, m.
+        residual: z − h(x), m.
+        diagonal: k × n × n, changed.
+        wide: border and gradient of each keyframe, k × n × (s + 1), changed.
+        corner: s × s, changed.
+        corner_gradient: s, changed.
+    """
+    width, last = diagonal.shape[1], len(corner_gradient)
+    most = columns.shape[1]
+    moving, lasting = np.empty(most, dtype=np.uint64), np.empty(most, dtype=np.uint64)
+    by_moving, by_lasting = np.empty(most), np.empty(most)
+    for r in chosen:
+        m, s = 0, 0
+        for a in range(most):
+            at, slope = columns[r, a], jacobian[r, a]
+            if at < 0 or slope == 0.0:
+                continue
+            if at < width:
+                moving[m], by_moving[m] = at, slope
+                m += 1
+            else:
+                lasting[s], by_lasting[s] = at - width, slope
+                s += 1
+        square, beside = diagonal[slab[r]], wide[slab[r]]
+        for a in range(m):
+            own, across = square[moving[a]], beside[moving[a]]
+            pulled = by_moving[a] * information[r]
+            across[last] += pulled * residual[r]
+            for b in range(m):
+                own[moving[b]] += pulled * by_moving[b]
+            for b in range(s):
+                across[lasting[b]] += pulled * by_lasting[b]
+        for a in range(s):
+            own, pulled = corner[lasting[a]], by_lasting[a] * information[r]
+            corner_gradient[lasting[a]] += pulled * residual[r]
+            for b in range(s):
+                own[lasting[b]] += pulled * by_lasting[b]
+
+
+@njit(cache=True)
+def add_part(at: Integers, part: Array, part_gradient: Array, corner: Array, gradient: Array) -> None:
+    """Add what one group says of some of the border's numbers to what is known of all of them.
+
+    Args:
+        at: which of them, m.
+        part: m × m.
+        part_gradient: m.
+        corner: s × s, changed.
+        gradient: s, changed.
+    """
+    for i in range(len(at)):
+        gradient[at[i]] += part_gradient[i]
+        for j in range(len(at)):
+            corner[at[i], at[j]] += part[i, j]
+
+
+@njit(cache=True, nogil=True)
+def add_motion(
+    block: int,
+    first: int,
+    transition: Array,
+    information: Array,
+    residual: Array,
+    diagonal: Array,
+    link: Array,
+    wide: Array,
+) -> None:
+    """Add the motion of one node to a chain: x' − F x = r with information Q⁻¹, step after step.
+
+    Args:
+        block: which of the keyframe's blocks of b numbers is the node's.
+        first: keyframe that its first step leaves from.
+        transition: F, m × b × b.
+        information: Q⁻¹, m × b × b.
+        residual: r, m × b.
+        diagonal: k × n × n, changed.
+        link: (k − 1) × blocks × b × b, changed.
+        wide: k × n × (s + 1), its last column changed.
+    """
+    m, size = residual.shape
+    at, last = block * size, wide.shape[2] - 1
+    pulled, square = np.empty((size, size)), np.empty((size, size))
+    for step in range(m):
+        before, after = first + step, first + step + 1
+        known, way = information[step], transition[step]
+        pulled[:], square[:] = 0.0, 0.0
+        # Most of F is nil.
+        for i in range(size):
+            for r in range(size):
+                if way[i, r] != 0.0:
+                    for c in range(size):
+                        pulled[r, c] += way[i, r] * known[i, c]
+        for i in range(size):
+            for c in range(size):
+                if way[i, c] != 0.0:
+                    for r in range(size):
+                        square[r, c] += pulled[r, i] * way[i, c]
+        for r in range(size):
+            for c in range(size):
+                diagonal[before, at + r, at + c] += square[r, c]
+                diagonal[after, at + r, at + c] += known[r, c]
+                link[before, block, c, r] -= pulled[r, c]
+                wide[before, at + r, last] += pulled[r, c] * residual[step, c]
+                wide[after, at + r, last] -= known[r, c] * residual[step, c]

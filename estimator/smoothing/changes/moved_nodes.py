@@ -1,0 +1,212 @@
+"""Nodes that lie somewhere else than they did (estimation.md, point 9).
+
+A breadcrumb may be kicked or carried: from some epoch on its readings disagree with its place, and agree with
+another one.
+"""
+
+from copy import copy
+from operator import itemgetter
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from estimator.fusion.entering.modes import CAUCHY, costs_of
+from estimator.fusion.memory.ledger import RANGE, RSSI
+from estimator.graph.chain_kernels import Integers
+from estimator.graph.dense import Array
+from estimator.graph.robust import cauchy_cost
+from estimator.smoothing.changes.masked_outliers import masked_place
+from estimator.smoothing.changes.relocation import (
+    READINGS_MIN,
+    USUAL_COST,
+    best_place,
+    changed_t,
+    contradicted,
+)
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+
+ALL_KINDS, BY_KIND = ((RANGE, RSSI),), ((RANGE,), (RSSI,))
+"""Kinds of readings that are asked together. Signals from afar say little of a place: among them ranges that
+disagree are not noticed. Where a window has not come to rest, its residuals are its own: there all are asked
+together, and one kind alone raises a suspicion, unless all others gain without the newest ranges."""
+RECENT_S = 120.0
+SUSPICION = 6.0
+"""How much worse than usual, in log likelihood, readings are together before another place is looked for."""
+DOUBT, NEW_S = 1.5, 30.0
+"""The same of the newest readings before a window is solved again soon."""
+LATEST = 3
+"""So many later beginnings of a disagreement are looked at as well."""
+
+
+class MovedNode(NamedTuple):
+    """A node that lies elsewhere.
+
+    Attributes:
+        name: the node.
+        since_t: the first epoch at which its readings agree with the new place (s).
+        readings: how many were made since.
+    """
+
+    name: str
+    since_t: float
+    readings: int
+
+
+def moved_nodes(
+    problem: Problem, solved: Solution, recent_s: float = RECENT_S
+) -> tuple[list[MovedNode], bool]:
+    """The standing nodes that readings put elsewhere, and whether some others may be elsewhere.
+
+    Asked is one reading of each link a second, see `Rows.rarer`: what a disagreement is to be is counted in
+    readings.
+
+    Args:
+        problem: of the window.
+        solved: its solution.
+        recent_s: how old readings may be (s).
+    """
+    state, whole = problem.layout.state, problem
+    chosen, rows = problem.rows.rarer()
+    problem = copy(problem)
+    problem.rows = rows
+    m = len(rows.pairs)
+    kinds = rows.pairs[:, 1]
+    now = float(problem.layout.grid[-1])
+    recent = chosen[(rows.pairs[chosen, 0] > now - recent_s) & (kinds[chosen] <= RSSI)]
+    recent = recent[np.argsort(rows.pairs[recent, 0], kind="stable")]
+    measured = {float(kind) for kind in (RANGE, RSSI) if (kinds[recent] == kind).any()}
+    residual, sigma = solved.linear.residual[recent], rows.sigma[recent]
+    cost, usual = np.empty(m), np.empty(m)
+    cost[recent] = cauchy_cost(residual / sigma, CAUCHY)
+    usual[recent] = costs_of(residual, sigma, rows.noise[recent], kinds[recent] == RANGE, rows.alike[recent])
+    found: list[tuple[float, MovedNode]] = []
+    suspected = False
+    for node in state.nodes.values():
+        if node.mode != "static" or node.role == "anchor":
+            continue
+        for together in BY_KIND if solved.rests else (*ALL_KINDS, *BY_KIND):
+            if measured.isdisjoint(together):
+                continue
+            kind = -1 if together in ALL_KINDS else together[0]
+            own, mine, suspicious, since, before = test_place(
+                recent, rows.pairs, node.index, kind, usual, cost, now - NEW_S
+            )
+            if len(mine) < READINGS_MIN:
+                continue
+            suspected = suspected or suspicious
+            asked = solved.rests or together in ALL_KINDS
+            if not asked and together != (RANGE,):
+                continue
+            parts = [mine[first:] for first in since.tolist()]
+            # It may be drawn to its new place already: then what disagrees lies in front.
+            parts += [mine[: len(mine) - first] for first in before.tolist()]
+            place, by = best_place(problem, solved, node, parts) if asked else None, solved
+            if place is None and together == (RANGE,) and parts and rows.pairs[parts[0][0], 0] > now - NEW_S:
+                drawn = masked_place(whole, solved, node, _since(rows.pairs, node.index, parts[0]))
+                if drawn is not None:
+                    place, by = drawn
+            if place is None:
+                continue
+            since_t = changed_t(problem, by, node, mine, place)
+            later = own[rows.pairs[own, 0] >= since_t]
+            if RANGE not in together and contradicted(problem, solved, node, later, place.position_m):
+                suspected = True
+                continue
+            found.append((place.far_m, MovedNode(node.node, since_t, len(later))))
+            break
+    if solved.rests and found:
+        # One that lies elsewhere makes its neighbours seem to, but less far: they are asked again without it.
+        return [max(found, key=itemgetter(0))[1]], suspected or len(found) > 1
+    return [moved for _, moved in found], suspected
+
+
+def _since(pairs: Array, number: int, mine: Integers) -> Integers:
+    """All ranges to a node since the first of some of them, in order of epoch."""
+    to = (pairs[:, 2] == number) | (pairs[:, 3] == number)
+    found = np.flatnonzero(to & (pairs[:, 1] == RANGE) & (pairs[:, 0] >= pairs[mine[0], 0]))
+    return found[np.argsort(pairs[found, 0], kind="stable")]
+
+
+class PlaceTest(NamedTuple):
+    """What readings to a node say of its place.
+
+    Attributes:
+        own: the readings to it, in order of epoch.
+        mine: those of them that are asked.
+        suspicious: it may lie elsewhere.
+        since: from which of those on they may disagree with its place, see `disagreeing`.
+        before: before which of the last ones they may, counted from the end; one at most.
+    """
+
+    own: Integers
+    mine: Integers
+    suspicious: bool
+    since: Integers
+    before: Integers
+
+
+@njit(cache=True)
+def test_place(
+    recent: Integers, pairs: Array, number: int, kind: int, usual: Array, cost: Array, new_t: float
+) -> PlaceTest:
+    """Ask the readings to one node whether they disagree with its place.
+
+    Args:
+        recent: readings, in order of epoch.
+        pairs: all of them, as rows of the ledger, m × 10.
+        number: of the node.
+        kind: of those that are asked; −1: all are.
+        usual: what each of the recent ones costs, walls among them, in log likelihood, m.
+        cost: what each of them costs, m.
+        new_t: epoch since which readings are new (s).
+    """
+    own, mine, newest = np.empty_like(recent), np.empty_like(recent), np.empty_like(recent)
+    all_of, some, new = 0, 0, 0
+    for i in recent:
+        if pairs[i, 2] == number or pairs[i, 3] == number:
+            own[all_of], all_of = i, all_of + 1
+            if kind < 0 or pairs[i, 1] == kind:
+                mine[some], some = i, some + 1
+                if pairs[i, 0] > new_t:
+                    newest[new], new = i, new + 1
+    own, mine, newest = own[:all_of], mine[:some], newest[:new]
+    # Walls disagree with places all the time: not for them is a window solved again sooner.
+    suspicious = len(disagreeing(usual[mine], SUSPICION)) > 0 or len(disagreeing(usual[newest], DOUBT)) > 0
+    backwards = disagreeing(cost[mine][::-1].copy(), SUSPICION)[:1]
+    return PlaceTest(own, mine, suspicious, disagreeing(cost[mine], SUSPICION), backwards)
+
+
+@njit(cache=True)
+def disagreeing(cost: Array, least: float) -> Integers:
+    """From where on readings, in order of epoch, may disagree with a place by their costs.
+
+    Where they do most of all in front, then the latest ones at which they begin to: an outlier from before
+    the node was moved belongs to its old place.
+
+    Args:
+        cost: of each reading, in log likelihood, m.
+        least: how much worse than usual they are together.
+    """
+    last = len(cost) - READINGS_MIN + 1
+    found, count = np.empty(1 + LATEST, dtype=np.int64), 0
+    from_here, worst, first, total = np.empty(max(last, 0)), -np.inf, -1, 0.0
+    for i in range(len(cost) - 1, -1, -1):
+        total += cost[i] - USUAL_COST
+        if i < last:
+            from_here[i] = total
+            if total >= worst:
+                worst, first = total, i
+    if first < 0 or worst < least:
+        return found[:0]
+    begun = 0
+    for i in range(last - 1, -1, -1):
+        begins = cost[i] > USUAL_COST and (i == 0 or not cost[i - 1] > USUAL_COST)
+        if begins and from_here[i] >= least and begun < LATEST:
+            begun += 1
+            if i != first:
+                count += 1
+                found[1 + LATEST - count] = i
+    found[LATEST - count] = first
+    return found[LATEST - count :]

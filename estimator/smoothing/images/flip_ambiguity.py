@@ -1,0 +1,297 @@
+"""Images of the way of somebody who is followed by ranges alone (flip ambiguity).
+
+Ranges to one radio tell no direction, and those to two not on which side of the line through them somebody
+is. Where he comes near that radio, or that line, he may leave it either way.
+"""
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.fusion import physics
+from estimator.fusion.images import Image
+from estimator.fusion.memory.ledger import RANGE, RSSI
+from estimator.fusion.motion.silence import SILENT_S
+from estimator.graph.chain_kernels import Integers
+from estimator.graph.dense import Array
+from estimator.smoothing.images.closest_approach import closest_approaches
+from estimator.smoothing.images.symmetries import across, around
+from estimator.smoothing.keyframes.layout import Walk
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+
+FIX = physics.NOISES.index(physics.FIX_NOISE)
+RADIOS = 2
+"""Radios whose symmetries are asked about: those that tell most of where somebody is."""
+MAST_M = 0.5
+"""Two radios on one mast, one above the other, are on no line on whose sides somebody may be."""
+LOOSE_M2 = 0.2
+"""A unit's step of a larger variance was made in silence."""
+SLACK_M, SLACK_DB = 0.5, 4.0
+"""What the rest of a way may bend by, so that readings fit an image of it."""
+CONTRADICTED, MOST = 1.0, 4.0
+"""Mean cost of a reading, in log likelihood, that contradicts an image, and what one costs at most."""
+RECENT_S = 20.0
+NEAR_M = 0.3
+
+
+class Effort(NamedTuple):
+    """How much is asked.
+
+    Attributes:
+        whole: where everybody was at any time, not only where he is now.
+        nearest: so many of the times when he was nearest to a line or a radio.
+        newest: and so many of the last.
+        flips: so many images of a way, those that jump least.
+        tried: so many are solved at most; fewer, where there are many ways.
+        rounds: so often it is asked again beside those who have gone to their image.
+    """
+
+    whole: bool
+    nearest: int
+    newest: int
+    flips: int
+    tried: int
+    rounds: int
+
+
+LIVE = Effort(whole=False, nearest=2, newest=2, flips=24, tried=6, rounds=2)
+WHOLE = Effort(whole=True, nearest=6, newest=2, flips=48, tried=16, rounds=4)
+
+
+class Flip(NamedTuple):
+    """An image of a way.
+
+    Attributes:
+        since: the keyframe from which on.
+        image: the image.
+        until: the keyframe up to which, if it is not its end.
+        along: which others change sides along with him, by index of their walks, and how.
+    """
+
+    since: int
+    image: Image
+    until: int | None = None
+    along: "tuple[tuple[int, Flip], ...]" = ()
+
+
+class HeardRadios(NamedTuple):
+    """Readings of one walk to radios that stand, and its fixes, as ranges of nil to where they say, m.
+
+    Attributes:
+        t: epoch of each (s).
+        slab: its keyframe.
+        here_m: where he was, m × 2.
+        radio_m: where the radio is, m × 2.
+        ranged: whether it is a range; else a signal's power.
+        sigma: its standard deviation (m or dB).
+        radio: number of the radio; −1: it is a fix.
+        told: what it tells of where he was, if it is of a radio.
+    """
+
+    t: Array
+    slab: Integers
+    here_m: Array
+    radio_m: Array
+    ranged: NDArray[np.bool_]
+    sigma: Array
+    radio: Integers
+    told: Array
+
+    def some(self, chosen: NDArray[np.bool_]) -> "HeardRadios":
+        """Some of them."""
+        t, slab, here_m, radio_m, ranged, sigma, radio, told = self
+        return HeardRadios(
+            t[chosen],
+            slab[chosen],
+            here_m[chosen],
+            radio_m[chosen],
+            ranged[chosen],
+            sigma[chosen],
+            radio[chosen],
+            told[chosen],
+        )
+
+    def contradicts(self, image: Image) -> bool:
+        """Whether they do not fit where an image would have put him; as nothing, they fit nowhere."""
+        was = np.maximum(np.hypot(*(self.here_m - self.radio_m).T), NEAR_M)
+        now = np.maximum(np.hypot(*(image.of(self.here_m) - self.radio_m).T), NEAR_M)
+        off = np.where(self.ranged, now - was, 20.0 * np.log10(now / was))
+        sigma = np.hypot(self.sigma, np.where(self.ranged, SLACK_M, SLACK_DB))
+        cost = np.minimum(0.5 * (off / sigma) ** 2, MOST)
+        return not len(cost) or bool(cost.mean() > CONTRADICTED)
+
+
+def heard_by(problem: Problem, solved: Solution, walk: Walk) -> HeardRadios:
+    """What a walk has heard of radios that stand."""
+    rows, m = problem.rows, len(problem.rows.pairs)
+    (a_m, b_m), (a_stands, b_stands) = rows.places(solved.x), rows.standing
+    first = (rows.pairs[:, 2] == walk.number) & b_stands
+    second = (rows.pairs[:, 3] == walk.number) & a_stands
+    at = np.flatnonzero((first | second) & (rows.pairs[:, 1] <= RSSI))
+    mine, jacobian = first[at][:, None], solved.linear.jacobian[at]
+    slope = np.where(mine, jacobian[:, :2], jacobian[:, 6:8])
+    seen = HeardRadios(
+        rows.t[at],
+        rows.slab[at],
+        np.where(mine, a_m[at, :2], b_m[at, :2]),
+        np.where(mine, b_m[at, :2], a_m[at, :2]),
+        rows.pairs[at, 1] == RANGE,
+        rows.sigma[at],
+        np.where(first[at], rows.pairs[at, 3], rows.pairs[at, 2]).astype(np.int64),
+        solved.weighted.information[:m][at] * (slope**2).sum(axis=1),
+    )
+    fixes = _fixes(problem, solved, walk)
+    return HeardRadios(*(np.concatenate(both) for both in zip(seen, fixes, strict=True)))
+
+
+def _fixes(problem: Problem, solved: Solution, walk: Walk) -> HeardRadios:
+    """A walk's fixes, each of whose three rows follow each other."""
+    rows, m = problem.rows, len(problem.rows.pairs)
+    own = (rows.singles[:, 1] == walk.number) & (rows.singles[:, 5] == FIX)
+    east = np.flatnonzero(own & (rows.singles[:, 2] == 0.0))
+    here_m = np.stack([rows.singles[east, 3], rows.singles[east + 1, 3]], axis=1)
+    off_m = np.stack([solved.linear.residual[m + east], solved.linear.residual[m + east + 1]], axis=1)
+    return HeardRadios(
+        rows.t[m + east],
+        rows.slab[m + east],
+        here_m - off_m,
+        here_m,
+        np.ones(len(east), dtype=bool),
+        rows.sigma[m + east],
+        np.full(len(east), -1),
+        np.zeros(len(east)),
+    )
+
+
+def loose_steps(problem: Problem, solved: Solution, index: int) -> NDArray[np.bool_]:
+    """Whether nothing, or a velocity at most, has led a walk on from each keyframe for some time, k.
+
+    Args:
+        problem: of a window.
+        solved: its solution.
+        index: of the walk.
+    """
+    layout = problem.layout
+    walk, times = layout.walks[index], layout.times[:, index]
+    found = np.zeros(layout.length, dtype=bool)
+    if walk.way is None:
+        found[walk.first : walk.last] = True
+        return found
+    found[walk.first : walk.last] = solved.motions[index].noise[:, 0, 0] > LOOSE_M2
+    if not found.any():
+        return found
+    turns = np.flatnonzero(np.diff(found, prepend=False, append=False))
+    for first, last in zip(turns[::2].tolist(), turns[1::2].tolist(), strict=True):
+        found[first:last] = times[last] - times[first] >= SILENT_S
+    return found
+
+
+def flips(
+    heard: HeardRadios, way_m: Array, walk: Walk, loose: NDArray[np.bool_], now: float, effort: Effort
+) -> list[Flip]:
+    """Images of a walk's way that its readings do not contradict, those that jump least first.
+
+    Args:
+        heard: what it has heard.
+        way_m: where it was at each keyframe, k × 2 (m).
+        walk: the walk.
+        loose: see `loose_steps`.
+        now: end of the window (s).
+        effort: how many are asked about.
+    """
+    found: list[Flip] = []
+    for radios in (radios_of(heard), radios_of(heard.some(heard.t > now - RECENT_S))):
+        for radio_m in radios:
+            off_m = way_m - radio_m
+            for k in closest_approaches(np.hypot(*off_m.T), walk, loose, effort.nearest, effort.newest):
+                towards = float(np.arctan2(off_m[k, 1], off_m[k, 0]))
+                found += [Flip(k, image) for image in around(radio_m, towards)]
+        for image, off_m in across(radios, way_m):
+            near = closest_approaches(np.abs(off_m), walk, loose, effort.nearest, effort.newest)
+            found += [Flip(k, image) for k in near]
+            if effort.whole:
+                found += [Flip(k, image, until) for k, until in pairwise(near)]
+    if effort.whole:
+        found += _between(heard, way_m, walk, loose, effort)
+    met = [_met(heard, way_m, flip, loose) for flip in dict.fromkeys(found)]
+    found = [flip for flip in met if flip is not None]
+    jumps_m = [float(np.hypot(*(flip.image.of(way_m[flip.since]) - way_m[flip.since]))) for flip in found]
+    return [found[k] for k in np.argsort(np.array(jumps_m), kind="stable")[: effort.flips].tolist()]
+
+
+def _between(
+    heard: HeardRadios, way_m: Array, walk: Walk, loose: NDArray[np.bool_], effort: Effort
+) -> list[Flip]:
+    """Reflections there and back, in the line through the two radios that tell most for some time.
+
+    Whoever is heard by other radios before and after may still have been on either side meanwhile.
+    """
+    found: list[Flip] = []
+    for stretch in np.unique(heard.t // RECENT_S).tolist():
+        off_s = heard.t - (stretch + 0.5) * RECENT_S
+        about = heard.slab[np.abs(off_s) <= 1.5 * RECENT_S]
+        own = loose.copy()
+        own[: about.min()] = own[about.max() + 1 :] = False
+        for image, off_m in across(radios_of(heard.some(np.abs(off_s) <= 0.5 * RECENT_S)), way_m):
+            near = closest_approaches(np.abs(off_m), walk, own, effort.nearest, effort.newest)
+            found += [Flip(k, image, until) for k, until in pairwise(near)]
+    return found
+
+
+def end_of(flip: Flip, loose: NDArray[np.bool_]) -> int:
+    """The last keyframe that an image has of its own: where something leads on again, if not before."""
+    end = flip.since + int(np.argmin(loose[flip.since :]))
+    return end if flip.until is None else min(end, flip.until)
+
+
+def _met(heard: HeardRadios, way_m: Array, flip: Flip, loose: NDArray[np.bool_]) -> Flip | None:
+    """An image that puts him there where he is heard of next; None: what he has heard contradicts it.
+
+    Args:
+        heard: what he has heard.
+        way_m: where he was at each keyframe, k × 2 (m).
+        flip: the image.
+        loose: see `loose_steps`.
+    """
+    end = end_of(flip, loose)
+    heard = heard.some(heard.slab >= flip.since)
+    within = heard.slab <= end
+    if within.any() or flip.until is not None or not len(within):
+        return None if heard.some(within).contradicts(flip.image) else flip
+    # Nothing was heard before his unit led again: what it has led since then goes along as it is.
+    met = int(heard.slab.min())
+    off_m = flip.image.of(way_m[met]) - way_m[met]
+    if heard.some(heard.slab == met).contradicts(Image(east_m=float(off_m[0]), north_m=float(off_m[1]))):
+        return None
+    return flip._replace(image=flip.image.through(way_m[end], way_m[end] + off_m))
+
+
+def exposed(heard: HeardRadios, now: float) -> bool:
+    """Whether an image fits what was heard last as well as where somebody is.
+
+    Args:
+        heard: what he has heard.
+        now: end of the window (s).
+    """
+    last = heard.some(heard.t > now - RECENT_S)
+    radios = radios_of(last)
+    images = [image for image, _ in across(radios, last.here_m)] or [
+        image for radio_m in radios for image in around(radio_m, 0.0)
+    ]
+    return any(not last.contradicts(image) for image in images)
+
+
+def radios_of(heard: HeardRadios) -> list[Array]:
+    """Where those radios are that tell most of where somebody is, each apart from the others (m)."""
+    numbers, first, index = np.unique(heard.radio, return_index=True, return_inverse=True)
+    told = np.bincount(index, heard.told, len(numbers))
+    found: list[Array] = []
+    for k in np.argsort(-told, kind="stable").tolist():
+        at_m = heard.radio_m[first[k]]
+        apart = all(np.hypot(*(at_m - other_m)) > MAST_M for other_m in found)
+        if told[k] > 0.0 and apart and len(found) < RADIOS:
+            found.append(at_m)
+    return found

@@ -1,0 +1,55 @@
+"""How likely readings are with heights that nobody measured, whatever these heights are.
+
+What costs least says only how well the best heights fit. Among powers and ranges that scatter there always
+are some that fit better than none, and the more people walk for the longer, the better they fit. So what is
+compared is the likelihood of the readings over all heights, log p(z) by Laplace's method (MacKay 1992): of as
+many heights as are free, few fit.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from estimator.graph.dense import Array
+from estimator.graph.robust import mixture_cost
+from estimator.smoothing.chain.chain import Chain
+from estimator.smoothing.keyframes.walks import misfit
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+
+UP = 2
+"""Which of a state's numbers is its height."""
+
+
+class MarginalCost(NamedTuple):
+    """What a solution costs over all that it might have been instead, up to a constant.
+
+    Attributes:
+        all: −log p(z) of all readings.
+        each: its share by the readings of each walk; one between two walks counts for both.
+    """
+
+    all: float
+    each: Array
+
+
+def marginal_cost(problem: Problem, solved: Solution, chain: Chain) -> MarginalCost:
+    """What a solution costs over all that it might have been instead.
+
+    It is to be compared with others of the same readings and keyframes, whose steps are as noisy but for how
+    unsure their heights are.
+
+    Args:
+        problem: of a window.
+        solved: its solution.
+        chain: its normal equations; they are used up.
+    """
+    rows, walks = problem.rows, problem.layout.walks
+    chain.reduce()
+    walked, border = chain.log_determinants()
+    costs, own = mixture_cost(solved.linear.residual, rows.sigma, *rows.noise.T), np.zeros(len(walks))
+    for i, (walk, motion) in enumerate(zip(walks, solved.motions, strict=True)):
+        own[i] = costs[rows.of([walk.number])].sum() + misfit(motion)
+        if walk.way is not None:
+            walked[i] += np.log(motion.noise[:, UP, UP]).sum()
+    return MarginalCost(solved.cost + 0.5 * (border + float(walked.sum())), own + 0.5 * walked)

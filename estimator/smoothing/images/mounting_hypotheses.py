@@ -1,0 +1,160 @@
+"""How units may be worn, and the solutions of a window that follow."""
+
+import math
+from collections.abc import Callable, Collection, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from msgspec.structs import replace
+
+from estimator.fusion.entering.unit_mounting import RIGHT, Mounting, mount, mounting_of
+from estimator.fusion.memory.state import FusionState
+from estimator.graph.dense import Array
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+
+RARE = math.log(0.01 / 4.0)
+"""Log odds that a unit is worn one of four wrong ways: all of them together one of a hundred is."""
+WRONG = (Mounting(True), *(Mounting(False, k * 0.5 * math.pi) for k in (1, 2, 3)))
+SLACKS_M = (3.0, 0.5, 0.1)
+ITERATIONS = 8
+HOPELESS = 60.0
+"""What another way costs more before these, in log likelihood, that is given up at once."""
+
+
+class MountingHypothesis(NamedTuple):
+    """How units may be worn, and what follows.
+
+    Attributes:
+        worn: of those that differ from what they are taken for, by number of the node.
+        x: the solution, flat.
+        cost: of it, with what is unlikely beforehand, in log likelihood.
+    """
+
+    worn: tuple[tuple[int, Mounting], ...]
+    x: Array
+    cost: float
+
+
+def hypotheses(
+    state: FusionState,
+    numbers: Sequence[int],
+    x: Array,
+    build: Callable[[FusionState], Problem],
+    resting: float,
+    anew: bool,
+) -> list[MountingHypothesis]:
+    """How units may be worn: first as they are taken to be; none where that has no solution.
+
+    Args:
+        state: the fusion.
+        numbers: of the nodes whose units are asked about.
+        x: the window's solution, flat.
+        build: makes the window's problem of another state.
+        resting: see `Problem.solve`.
+        anew: also with everybody where his own unit has led him from the beginning: the solution may have
+            bent the good ones to a wrong one.
+    """
+    plain = _unlearned(state)
+    wrong = [number for number in numbers if mounting_of(state.life(number)) != RIGHT]
+    tried: list[dict[int, Mounting]] = [{}, *({number: RIGHT} for number in wrong)]
+    for number in numbers:
+        for way in WRONG:
+            if mounting_of(state.life(number)) == way:
+                continue
+            tried.append({number: way})
+            tried += [{other: RIGHT, number: way} for other in wrong if other != number]
+    found: list[MountingHypothesis] = []
+    for each in tried:
+        other = plain.copy()
+        for number, way in each.items():
+            mount(other, number, way)
+        trial = build(other)
+        odd = sum(mounting_of(other.life(number)) != RIGHT for number in numbers)
+        most = math.inf if not found else found[0].cost + RARE * odd
+        starts = [_reckoned(trial, x, each), *([_reckoned(trial, x)] if anew else [])]
+        ways = [_led(trial, start, most, resting) for start in starts]
+        if not each:
+            # As it is: how far off a start may be that is none may lead it away.
+            ways.append(_rested(trial, x, resting))
+        solved = min((way for way in ways if way is not None), key=lambda way: way.cost, default=None)
+        if solved is None and not found:
+            break
+        if solved is not None:
+            found.append(MountingHypothesis(tuple(each.items()), solved.x, solved.cost - RARE * odd))
+    best = min(found, key=lambda guess: guess.cost, default=None)
+    if best is not None and best is not found[0]:
+        # What was found along with it, as it is: that others lie better elsewhere speaks against no unit.
+        trial = build(plain)
+        again = _led(trial, _reckoned(trial, best.x, dict(best.worn)), math.inf, resting)
+        odd = sum(mounting_of(plain.life(number)) != RIGHT for number in numbers)
+        if again is not None and again.cost - RARE * odd < found[0].cost:
+            found[0] = MountingHypothesis((), again.x, again.cost - RARE * odd)
+    return found
+
+
+def _led(problem: Problem, x: Array, known: float, resting: float) -> Solution | None:
+    """Where units worn another way lead to; None: it is hopeless, or hangs in the air there.
+
+    Args:
+        problem: of the window, worn so.
+        x: where to begin, flat.
+        known: what it may cost to be as likely as it is thought to be, in log likelihood.
+        resting: see `Problem.solve`.
+    """
+    try:
+        begun = problem.solve(x, SLACKS_M, len(SLACKS_M), resting)
+    except ValueError:
+        return None
+    return None if begun.cost > known + HOPELESS else _rested(problem, begun.x, resting)
+
+
+def _rested(problem: Problem, x: Array, resting: float) -> Solution | None:
+    """The solution from an estimate, flat, that is near it; None: it hangs in the air there."""
+    try:
+        return problem.solve(x, iterations=ITERATIONS, resting=resting)
+    except ValueError:
+        return None
+
+
+def _unlearned(state: FusionState) -> FusionState:
+    """A copy in which nothing is known of how noisy units and radios are: a wrong world has made it."""
+    other = state.copy()
+    other.noise = {}
+    for node in list(other.nodes.values()):
+        other.keep(replace(node, walk_factors=(1.0, 1.0)))
+    return other
+
+
+def _reckoned(problem: Problem, x: Array, some: Collection[int] | None = None) -> Array:
+    """An estimate with units gone their own way from where they began, flat; crumbs lie along it.
+
+    Args:
+        problem: of the window.
+        x: where all others are, flat.
+        some: numbers of the units; None: all that began in it.
+    """
+    layout, begins = problem.layout, problem.layout.state.ledger.table("begins")
+    known = () if problem.prior is None else problem.prior.keys
+    there, found = x.copy(), x.copy()
+    chosen = {
+        walk.number: i
+        for i, walk in enumerate(layout.walks)
+        if walk.way is not None
+        and ("walk", walk.number) not in known
+        and (some is None or walk.number in some)
+    }
+    for number, i in chosen.items():
+        rows = begins[begins[:, 1] == number]
+        first = layout.states(there, i)[layout.walks[i].first]
+        first[:3], first[3:] = rows[0, 4:7], (rows[rows[:, 2] == 1.0][-1, 10], 0.0, 0.0)
+    there = problem.going.reckoned(there, -math.inf)
+    for i in chosen.values():
+        layout.states(found, i)[:] = layout.states(there, i)
+    size = layout.length * layout.width
+    for t, crumb, by in layout.state.ledger.table("drops")[:, :3].tolist():
+        if int(crumb) in layout.stands and int(by) in chosen:
+            i, start = chosen[int(by)], size + layout.stands[int(crumb)]
+            for c in range(3):
+                found[start + c] = np.interp(t, layout.times[:, i], layout.states(found, i)[:, c])
+    return found

@@ -1,0 +1,145 @@
+"""Who has climbed unseen: heights that neither a unit nor anything else measures, but distances tell.
+
+Where all lie in one plane no distance tells up from down, so no step of a solution leads out of it, however
+much too long distances are. So a solution with heights is sought from a little above.
+"""
+
+from collections.abc import Callable, Collection, Sequence
+
+import numpy as np
+from msgspec.structs import replace
+
+from estimator.fusion import physics
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.steps import CLIMB_M2_PER_M
+from estimator.graph.dense import Array
+from estimator.smoothing.images.marginal_heights import UP, MarginalCost, marginal_cost
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+
+OFF_PLANE_M = 0.3
+"""Far enough for distances to lead on, too little for them to tell."""
+CLEAR = 10.0
+"""Log odds from which on somebody has climbed. A kick is found by as much."""
+SOON, HOPELESS = 3, 10.0
+"""Steps after which heights are given up whose readings are this much less likely with each of them."""
+HINT = 5.0
+"""Readings that cost so much more than they did hint at heights: it was 18 to 22 where somebody had climbed.
+On the level they may as well, by chance: then it is asked in vain."""
+CLIMBED_M = 0.5 * physics.FLOOR_M
+"""Whose height changes by less may have kept level all the time."""
+
+
+def hinted(problem: Problem, solved: Solution) -> bool:
+    """Whether a window's readings cost clearly more than when it was last asked in vain who has climbed.
+
+    Args:
+        problem: of a window; its state is told what they cost.
+        solved: its solution.
+    """
+    state, count = problem.layout.state, len(problem.rows.slab)
+    if count == 0:
+        return False
+    if solved.cost - state.level_cost * count > HINT:
+        return True
+    state.level_cost = min(state.level_cost, solved.cost / count)
+    return False
+
+
+def find_unseen_climb(
+    problem: Problem, solved: Solution, build: Callable[[FusionState], Problem], resting: float
+) -> tuple[Problem, Solution]:
+    """Let those climb whose units measure no heights, where that is clearly likelier than keeping level.
+
+    Args:
+        problem: of a window; its state is told who has climbed.
+        solved: its solution.
+        build: makes the same problem of another state.
+        resting: see `Problem.solve`.
+    """
+    state, layout = problem.layout.state, problem.layout
+    doubted = [i for i, w in enumerate(layout.walks) if w.way is not None and w.node.doubt_up_m2 > 0.0]
+    lacking = _lacking(state, layout.since_t) if doubted else set[int]()
+    level = [i for i in doubted if layout.walks[i].number in lacking]
+    if not level:
+        return problem, solved
+    x = solved.x.copy()
+    for i in level:
+        layout.states(x, i)[:, UP] += OFF_PLANE_M
+    trial = _trial(problem, solved, level, build)
+    found = trial.solve(x, iterations=SOON, resting=resting)
+    state.level_cost = solved.cost / max(len(problem.rows.slab), 1)
+    before: MarginalCost | None = None
+    if not found.rests:
+        before = _as_it_is(problem, solved)
+        after = marginal_cost(trial, found, found.chain)
+        if (after.each[level] > before.each[level] + HOPELESS).all():
+            return problem, solved
+        found = trial.solve(found.x, resting=resting)
+    rose = [i for i in level if np.ptp(_heights(problem, found.x, i)) > CLIMBED_M]
+    if not rose or found.cost > solved.cost - CLEAR:
+        return problem, solved
+    before = before or _as_it_is(problem, solved)
+    after = marginal_cost(trial, found, found.chain)
+    likelier = [i for i in rose if after.each[i] < before.each[i]]
+    if likelier and likelier != level:
+        # Heights of others, which fit noise, speak neither for nor against his.
+        x = found.x.copy()
+        for i in level:
+            if i not in likelier:
+                layout.states(x, i)[:, UP] = layout.states(solved.x, i)[:, UP]
+        trial = _trial(problem, solved, likelier, build)
+        found = trial.solve(x, resting=resting)
+        after = marginal_cost(trial, found, found.chain)
+    if not likelier or after.all > before.all - CLEAR:
+        return problem, solved
+    _let_climb(state, [layout.walks[i].number for i in likelier], layout.since_t)
+    anew = build(state)
+    return anew, anew.solve(found.x, resting=resting)
+
+
+def _as_it_is(problem: Problem, solved: Solution) -> MarginalCost:
+    """See `marginal_cost`: of a solution whose own equations are left for others."""
+    chain = problem.assemble(solved.x, solved.linear, solved.weighted, solved.motions)
+    return marginal_cost(problem, solved, chain)
+
+
+def _trial(
+    problem: Problem, solved: Solution, walks: Sequence[int], build: Callable[[FusionState], Problem]
+) -> Problem:
+    """The window with some walks, by index, let climb, and floors between radios where a solution has them.
+
+    With others it could not be compared with that (decision 0019).
+    """
+    other, layout = problem.layout.state.copy(), problem.layout
+    _let_climb(other, [layout.walks[i].number for i in walks], layout.since_t)
+    trial = build(other)
+    trial.rows.floors = trial.rows.through(solved.x)
+    return trial
+
+
+def _heights(problem: Problem, x: Array, index: int) -> Array:
+    walk = problem.layout.walks[index]
+    heights: Array = problem.layout.states(x, index)[walk.first : walk.last + 1, UP]
+    return heights
+
+
+def _lacking(state: FusionState, since_t: float) -> set[int]:
+    """Units with steps since an epoch that are held to be level."""
+    steps = state.ledger.table("steps")
+    level = (steps[:, 0] > since_t) & (steps[:, 7] < _climbs_m2(steps))
+    return {int(number) for number in np.unique(steps[level, 1])}
+
+
+def _let_climb(state: FusionState, numbers: Collection[int], since_t: float) -> None:
+    """Let each step of some units be as unsure in height as a stair makes it, from an epoch on."""
+    for number in numbers:
+        state.keep(replace(state.life(number), climbs=True))
+    steps = state.ledger.table("steps").copy()
+    mine = np.isin(steps[:, 1], list(numbers)) & (steps[:, 0] > since_t)
+    steps[mine, 7] = np.maximum(steps[mine, 7], _climbs_m2(steps[mine]))
+    state.ledger.replace("steps", steps)
+
+
+def _climbs_m2(steps: Array) -> Array:
+    return np.asarray(CLIMB_M2_PER_M * np.hypot(steps[:, 3], steps[:, 4]))

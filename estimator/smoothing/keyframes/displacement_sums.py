@@ -1,0 +1,234 @@
+"""Displacements summed up along a unit's way, and what of them lies between any two epochs."""
+
+from collections.abc import Sequence
+from itertools import accumulate
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from estimator.fusion.motion.long_displacements import STRAIGHT_S
+from estimator.fusion.motion.silence import wandered_m2
+from estimator.graph.chain_kernels import Integers
+from estimator.graph.dense import Array
+
+BRIDGED_M_PER_ROOT_S = 1.0
+"""A way over a longer time than `STRAIGHT_S` is a random walk between its ends."""
+SUMS = 12
+"""Displacement 3, its first moment 3, variances 5, length."""
+LENGTH = 11
+"""Which of them its length is."""
+LAID = 8
+"""What readings need of them."""
+
+
+class SummedEnds(NamedTuple):
+    """What m ends of readings have walked since their keyframes: see `ends.Table` and `ends.Ends`."""
+
+    delta_m: Array
+    moment: Array
+    unsure_m2: Array
+
+
+class Way:
+    """Displacements of one PDR unit summed up along its time, with the variances that they add.
+
+    Args:
+        begin_t: epoch at which it begins (s).
+        steps: its rows of the ledger's `steps`, in order of epoch.
+        factors: learned variances over the assumed ones: of position, of heading.
+
+    Attributes:
+        begin_t: epoch at which it begins (s).
+        marks: see `summed`.
+        sums: see `summed`.
+    """
+
+    def __init__(self, begin_t: float, steps: Array, factors: tuple[float, float]) -> None:
+        self.begin_t = begin_t
+        self.marks, self.sums = summed(begin_t, steps, *factors)
+
+    def bridged(self, t: Array) -> Array:
+        """Variance of where it was at `t`, m (m²), inside a displacement over a long time.
+
+        Only its two ends are known: between them the bearer may have walked anywhere, a Brownian bridge.
+        """
+        right = np.clip(np.searchsorted(self.marks, t, side="left"), 1, max(len(self.marks) - 1, 1))
+        if len(self.marks) == 1:
+            return np.zeros(len(t))
+        before, after = self.marks[right - 1], self.marks[right]
+        span = after - before
+        inside = (span > STRAIGHT_S) & (t > before) & (t < after)
+        return np.where(
+            inside, BRIDGED_M_PER_ROOT_S**2 * (t - before) * (after - t) / np.maximum(span, 1e-9), 0.0
+        )
+
+    def between(self, since: Array, until: Array) -> Array:
+        """What lies between epochs, m × 12, moments from `since` on; silence adds what it lets wander."""
+        since, until = np.ascontiguousarray(since), np.ascontiguousarray(until)
+        return np.asarray(sums_between(self.begin_t, self.marks, self.sums, since, until))
+
+    def gone(self, t: Array) -> Array:
+        """Share of its whole length that it has gone at `t`, m."""
+        begins = np.full(len(t), self.begin_t)
+        return np.asarray(self.between(begins, t)[:, LENGTH] / max(float(self.sums[-1, LENGTH]), 1e-9))
+
+
+class Ways(NamedTuple):
+    """The ways of w units one behind the other.
+
+    Attributes:
+        numbers: of their nodes, w.
+        begin_t: epochs at which they begin, w (s).
+        firsts: where the marks of each begin, and where the last ones end, w + 1.
+        marks: see `summed`, of all of them.
+        sums: the same.
+    """
+
+    numbers: Integers
+    begin_t: Array
+    firsts: Integers
+    marks: Array
+    sums: Array
+
+
+NO_WAYS = Ways(np.zeros(0, np.int64), np.zeros(0), np.zeros(1, np.int64), np.zeros(0), np.zeros((0, SUMS)))
+
+
+def ways_of(numbers: Sequence[int], ways: Sequence[Way]) -> Ways:
+    """Ways one behind the other, with the numbers of their nodes."""
+    if not ways:
+        return NO_WAYS
+    firsts = np.array([0, *accumulate(len(way.marks) for way in ways)])
+    begin_t = np.array([way.begin_t for way in ways])
+    if len(ways) == 1:
+        return Ways(np.array(numbers), begin_t, firsts, ways[0].marks, ways[0].sums)
+    marks, sums = np.concatenate([way.marks for way in ways]), np.concatenate([way.sums for way in ways])
+    return Ways(np.array(numbers), begin_t, firsts, marks, sums)
+
+
+@njit(cache=True)
+def summed(begin_t: float, steps: Array, by_place: float, by_turn: float) -> tuple[Array, Array]:
+    """Epochs at which displacements end, after that at which they begin, and sums up to each; see `Way`.
+
+    Args:
+        begin_t: epoch at which it begins (s).
+        steps: the ledger's rows, m × 12, in order of epoch.
+        by_place: learned variance of position, across, over the assumed one.
+        by_turn: that of heading.
+    """
+    m = len(steps)
+    marks, sums, each = np.empty(m + 1), np.zeros((m + 1, SUMS)), np.empty(SUMS)
+    marks[0] = begin_t
+    for i in range(m):
+        marks[i + 1] = steps[i, 0]
+        middle = 0.5 * (steps[i, 2] + steps[i, 0]) - begin_t
+        factor = by_place if steps[i, 11] == 0.0 else 1.0
+        for c in range(3):
+            each[c], each[3 + c] = steps[i, 3 + c], steps[i, 3 + c] * middle
+        each[6], each[7], each[8] = steps[i, 6] * factor, steps[i, 7], steps[i, 8] * by_turn
+        each[9], each[10] = steps[i, 9], steps[i, 10]
+        each[LENGTH] = np.sqrt(steps[i, 3] * steps[i, 3] + steps[i, 4] * steps[i, 4])
+        for c in range(SUMS):
+            sums[i + 1, c] = sums[i, c] + each[c]
+    return marks, sums
+
+
+@njit(cache=True)
+def sum_up_to(marks: Array, sums: Array, t: float, found: Array) -> None:
+    """Sums of a way up to one epoch: as many as `found` takes.
+
+    Args:
+        marks: epochs at which displacements end, ascending; before them that at which the first one began.
+        sums: up to each of them.
+        t: the epoch.
+        found: takes the sums.
+    """
+    inside, last = min(max(t, marks[0]), marks[-1]), len(marks) - 1
+    right = min(max(np.searchsorted(marks, inside, side="right"), 1), last)
+    if last == 0:
+        found[:] = 0.0
+        return
+    span = marks[right] - marks[right - 1]
+    share = (inside - marks[right - 1]) / span if span > 0.0 else 1.0
+    for c in range(len(found)):
+        found[c] = sums[right - 1, c] + share * (sums[right, c] - sums[right - 1, c])
+
+
+@njit(cache=True)
+def sum_between(
+    begin_t: float, marks: Array, sums: Array, since: float, until: float, before: Array, found: Array
+) -> None:
+    """What a way's displacements say of it between two epochs, 12, moments from `since` on.
+
+    Silence adds a random walk (`silence.wandered_m2`), after the last displacement and before the first:
+    whose unit is switched on inside has walked there as well.
+
+    Args:
+        begin_t: epoch at which it begins (s).
+        marks: see `sum_up_to`.
+        sums: see `sum_up_to`.
+        since: one epoch (s).
+        until: the other one (s).
+        before: sums up to the one epoch.
+        found: takes the sums, 8 at least.
+    """
+    sum_up_to(marks, sums, until, found)
+    for c in range(len(found)):
+        found[c] -= before[c]
+    for c in range(3):
+        found[3 + c] -= found[c] * (since - begin_t)
+    wander = 0.0
+    for silent_s in (min(until, marks[0]) - since, until - max(since, marks[-1])):
+        if silent_s > 0.0:
+            wander += wandered_m2(silent_s, np.inf)
+    found[6] += wander
+    found[7] += 0.1 * wander
+
+
+@njit(cache=True)
+def sums_between(begin_t: float, marks: Array, sums: Array, since: Array, until: Array) -> Array:
+    """Those between m pairs of epochs, m × 12."""
+    found, before = np.empty((len(since), SUMS)), np.empty(SUMS)
+    for i in range(len(since)):
+        sum_up_to(marks, sums, since[i], before)
+        sum_between(begin_t, marks, sums, since[i], until[i], before, found[i])
+    return found
+
+
+@njit(cache=True)
+def lay_out(
+    begin_t: float,
+    marks: Array,
+    sums: Array,
+    mine: int,
+    numbers: Integers,
+    since: Array,
+    until: Array,
+    to: SummedEnds,
+) -> None:
+    """Put what lies between epochs where it belongs, of those of m ends that are one node's.
+
+    Args:
+        begin_t: epoch at which its way begins (s).
+        marks: see `sum_up_to`.
+        sums: see `sum_up_to`.
+        mine: number of the node.
+        numbers: of the node of each end, m.
+        since: epochs of their keyframes, m (s).
+        until: their own epochs, m (s).
+        to: takes it.
+    """
+    found, before, since_t, until_t = np.empty(LAID), np.empty(LAID), np.nan, np.nan
+    for i in range(len(numbers)):
+        if numbers[i] != mine:
+            continue
+        # Many ends share a keyframe, and those of one sweep their epoch as well.
+        if since[i] != since_t:
+            sum_up_to(marks, sums, since[i], before)
+        if since[i] != since_t or until[i] != until_t:
+            since_t, until_t = since[i], until[i]
+            sum_between(begin_t, marks, sums, since_t, until_t, before, found)
+        for c in range(3):
+            to.delta_m[i, c], to.moment[i, c] = found[c], found[3 + c]
+            to.unsure_m2[i, c] = abs(found[6 if c < 2 else 7])

@@ -1,0 +1,186 @@
+"""What a solved window tells of units and technologies: how noisy, how well calibrated.
+
+The score of the marginal likelihood by a noise parameter is what the smoothed steps say of it (Fisher's
+identity): ½ Σ [E(w wᵀ) − Q] : Q⁻¹ Q_i Q⁻¹, with E(w wᵀ) = ŵ ŵᵀ + V. A few damped steps along it, one with
+each solution of the window, find the variance under which unit and radio agree best, and not a smaller one:
+what the radio does not see of a step stays in V.
+"""
+
+import numpy as np
+from msgspec.structs import replace
+from numba import njit
+
+from estimator.fusion.learned.calibration import Calibration, scale_sigma, told_of, uncalibrated
+from estimator.fusion.memory.state import FusionState
+from estimator.graph.dense import Array
+from estimator.smoothing.keyframes.walks import STATES, Motion
+from estimator.smoothing.learning.delays import doubt_delays
+from estimator.smoothing.learning.range_noise import learn_ranging
+from estimator.smoothing.learning.wrong_steps import Doubts, doubts_of, find_slips, widen_steps
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+
+SPREAD = 1.0
+"""Units differ from the usual one by this much in the logarithm of a variance."""
+STEP, DOUBTED = 0.3, 3.0
+"""Farthest that the logarithm of a variance moves in one solution; and so many times as far towards more
+noise: while a unit far worse than assumed is trusted, its bearer is led astray."""
+SEEN = 0.03
+"""Share of a step's own noise that readings usually tell apart: what a score is held against."""
+LEAST, MOST = 0.03, 400.0
+"""The worst unit is off by 0.7 m in each metre: it tells nothing any more."""
+BIAS = 4
+"""Which of a state's numbers is the gyro bias."""
+PARTS = 4
+"""Numbers of a state that its noise is learned of: place and heading."""
+
+
+def learn(
+    state: FusionState, problem: Problem, solved: Solution, step: float = STEP, kinds: bool = True
+) -> Array:
+    """Learn from a solved window how noisy each unit is, and which technologies are calibrated.
+
+    Args:
+        state: takes what is learned.
+        problem: of the window.
+        solved: its solution, whose chain is eliminated here.
+        step: farthest that the logarithm of a variance moves at once.
+        kinds: technologies are judged as well.
+
+    Returns:
+        Covariance of each walk at each keyframe, k × walks × 6 × 6.
+    """
+    solved.chain.reduce()
+    found, ahead, border = solved.chain.covariances()
+    doubts = doubts_of(problem, solved, found, ahead)
+    learn_walks(state, problem, solved, doubts, step)
+    if solved.rests:
+        slips = find_slips(problem, solved, doubts)
+        widen_steps(state, slips)
+        state.due = state.due or bool(slips)
+    if kinds:
+        calibrate(state, problem, solved.x, border)
+        if solved.rests:
+            doubt_delays(state, problem, solved)
+            state.due = learn_ranging(state, problem, solved) or state.due
+    learn_biases(state, problem, solved.x, found)
+    return found
+
+
+def learn_walks(
+    state: FusionState, problem: Problem, solved: Solution, doubts: Doubts, most: float = STEP
+) -> None:
+    """Move each unit's noise factors along their score.
+
+    Args:
+        state: its nodes take the factors.
+        problem: of the window.
+        solved: its solution.
+        doubts: see `wrong_steps.doubts_of`.
+        most: see `STEP`.
+    """
+    for i, doubt in doubts.items():
+        scores = noise_scores(solved.motions[i], doubt).tolist()
+        node = state.life(problem.layout.walks[i].number)
+        factors = []
+        for factor, (score, sure) in zip(node.walk_factors, scores, strict=True):
+            off = np.log(factor)
+            known = sure * SEEN + abs(score) + 1.0 / SPREAD**2
+            step = min(max(2.0 * (score - off / SPREAD**2) / known, -most), DOUBTED * most)
+            factors.append(float(min(max(factor * np.exp(step), LEAST), MOST)))
+        state.keep(replace(node, walk_factors=(factors[0], factors[1])))
+
+
+@njit(cache=True)
+def noise_scores(motion: Motion, unsure_of: Array) -> Array:
+    """Score by the logarithm of a variance, ½ Σ [w wᵀ + V − Q] : Q⁻¹ Q_i Q⁻¹, and ½ Σ (Q⁻¹ Q_i) : (Q_i Q⁻¹).
+
+    Args:
+        motion: of a walk.
+        unsure_of: V of its steps, k × 6 × 6.
+
+    Returns:
+        A row for the variances of places and one for those of headings, 2 × 2.
+    """
+    found = np.zeros((2, 2))
+    size = motion.residual.shape[1]
+    # Of each noise, and of what follows from it, only the first four rows and columns are ever needed.
+    part, excess, told = np.zeros((2, PARTS, PARTS)), np.empty((PARTS, PARTS)), np.empty((PARTS, PARTS))
+    half = np.empty((PARTS, size))
+    for i in range(len(motion.residual)):
+        known, noise, off, doubt = motion.information[i], motion.noise[i], motion.residual[i], unsure_of[i]
+        turn = noise[3, 3]
+        east, north = 2.0 * noise[0, 3] / turn, 2.0 * noise[1, 3] / turn
+        by_place, by_turn = part[0], part[1]
+        by_turn[0, 0], by_turn[1, 1] = east * east * turn / 3.0, north * north * turn / 3.0
+        by_turn[0, 1] = by_turn[1, 0] = east * north * turn / 3.0
+        by_turn[0, 3] = by_turn[3, 0] = 0.5 * east * turn
+        by_turn[1, 3] = by_turn[3, 1] = 0.5 * north * turn
+        by_turn[3, 3] = turn
+        for c in range(2):
+            by_place[c, c] = noise[c, c] - by_turn[c, c]
+        for r in range(PARTS):
+            half[r] = 0.0
+            for j in range(size):
+                for c in range(size):
+                    half[r, c] += known[r, j] * (off[j] * off[c] + doubt[j, c] - noise[j, c])
+            for c in range(PARTS):
+                excess[r, c] = 0.0
+                for j in range(size):
+                    excess[r, c] += half[r, j] * known[j, c]
+        for which in range(2):
+            for r in range(PARTS):
+                for c in range(PARTS):
+                    found[which, 0] += 0.5 * excess[r, c] * part[which, r, c]
+                    told[r, c] = 0.0
+                    for j in range(PARTS):
+                        told[r, c] += known[r, j] * part[which, j, c]
+            for r in range(PARTS):
+                for c in range(PARTS):
+                    found[which, 1] += 0.5 * told[r, c] * told[c, r]
+    return found
+
+
+def calibrate(state: FusionState, problem: Problem, x: Array, border: Array) -> None:
+    """Judge anew which technologies are calibrated, as long as their prior is the window's own.
+
+    Only odometry tells a scale (estimation.md, point 3): a velocity that may be anything shrinks or grows
+    with it.
+    """
+    size = problem.layout.length * problem.layout.width
+    known = set() if problem.prior is None else set(problem.prior.keys)
+    for key, start in problem.layout.technologies.items():
+        if key[0] == "range" and key not in known and problem.rows.by_units(key[1]):
+            name = state.sources[key[1]]
+            narrow = state.narrow_sigma(name)
+            sigma = state.range_scale_sigma(name)
+            told = uncalibrated(sigma, float(x[size + start]), float(border[start, start]), narrow)
+            state.calibrations[name] = Calibration(told, narrow, sigma)
+            # Another prior bends everything: what follows from it is not left for later.
+            state.due = state.due or scale_sigma(told, narrow) != sigma
+
+
+def learn_biases(state: FusionState, problem: Problem, x: Array, found: Array) -> None:
+    """Note what the window says of each gyro's bias, as long as its prior is the window's own.
+
+    Of one that navigates raw samples a rest has told already what a crew's others would tell.
+
+    Args:
+        state: its nodes take it.
+        problem: of the window.
+        x: its solution, flat.
+        found: covariance of each walk at each keyframe, k × walks × 6 × 6.
+    """
+    layout = problem.layout
+    known = set() if problem.prior is None else set(problem.prior.keys)
+    told = {}
+    for i, walk in enumerate(layout.walks):
+        if walk.way is None or ("walk", walk.number) in known:
+            continue
+        if walk.node.raw:
+            continue
+        at = walk.first * layout.width + STATES * i + BIAS
+        variance = float(found[walk.first, i, BIAS, BIAS])
+        told[walk.number] = told_of(state.bias_sigma_radps(walk.node), float(x[at]), variance)
+    for number, one in told.items():
+        state.keep(replace(state.life(number), bias_told=one))

@@ -1,0 +1,56 @@
+"""What readings say of the border that are not looked at again: a parabola about an estimate."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from estimator.graph.assembly import scatter_rows
+from estimator.graph.chain_kernels import Integers
+from estimator.graph.dense import Array
+from estimator.graph.robust import Weighted
+from estimator.smoothing.chain.chain import Chain
+
+
+class HeldQuadratic(NamedTuple):
+    """A Kirchhoff matrix of the border, where all that moves is held where it is.
+
+    Attributes:
+        matrix: s × s.
+        vector: in deviations from `reference`, s.
+        reference: the border's numbers where the readings were linearised, s.
+    """
+
+    matrix: Array
+    vector: Array
+    reference: Array
+
+    def cost(self, border: Array) -> float:
+        """Negative log likelihood of the border's numbers, s, up to a constant."""
+        off = border - self.reference
+        return float(0.5 * off @ (self.matrix @ off) - self.vector @ off)
+
+    def add(self, chain: Chain, border: Array) -> None:
+        """Add it to normal equations at the border's numbers, s."""
+        rest = chain.strands[-1]  # it has all of the border
+        rest.corner += self.matrix
+        rest.corner_gradient += self.vector - self.matrix @ (border - self.reference)
+
+
+def hold_quadratic(
+    chosen: Integers, columns: Integers, jacobian: Array, weighted: Weighted, border: Array
+) -> HeldQuadratic:
+    """What some of m readings say of the border.
+
+    Args:
+        chosen: which.
+        columns: where each depends on the border, m × 14; −1: on something else, or on nothing.
+        jacobian: their derivatives, m × 14.
+        weighted: how they are weighed.
+        border: its numbers where they were linearised, s.
+    """
+    size = len(border)
+    nothing, slab = np.zeros((1, 0, 0)), np.zeros(len(columns), dtype=np.int64)
+    matrix, vector = np.zeros((size, size)), np.zeros(size)
+    rows = columns, jacobian, weighted.information, weighted.residual
+    scatter_rows(chosen, slab, *rows, nothing, np.zeros((1, 0, size + 1)), matrix, vector)
+    return HeldQuadratic(matrix, vector, border)

@@ -1,0 +1,217 @@
+"""What has left the window, laid on its unknowns: the prior of its first keyframe and of the border."""
+
+from collections.abc import Iterable, Sequence
+from copy import copy
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from estimator.fusion import physics
+from estimator.fusion.memory.prior import SIZES, Key, Prior
+from estimator.graph.chain_kernels import Integers
+from estimator.graph.dense import Array, Indices
+from estimator.graph.gauge import Turning, change_pairs, pivot, turn_pairs, turning
+from estimator.graph.kirchhoff import marginalised
+from estimator.smoothing.chain.chain import Chain
+from estimator.smoothing.chain.groups import Group
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.keyframes.unknowns import Unknowns
+from estimator.smoothing.keyframes.walks import HEADING, PLACES, STATES
+from estimator.smoothing.problem.gauge_turn import moved_from, turn_between
+
+OLDEST = 1.0 / 6.0
+"""Share of a window that goes when it has become long."""
+
+
+class SharedNumbers(NamedTuple):
+    """What a prior and one group of walks have in common.
+
+    Attributes:
+        moving: which of the prior's numbers are of its keyframe.
+        lasting: which are of its border.
+        own: which columns of its keyframe those are.
+        rest: which columns of its border.
+    """
+
+    moving: Indices
+    lasting: Indices
+    own: Indices
+    rest: Indices
+
+
+class MarginalPrior:
+    """A prior among the unknowns of a window.
+
+    Args:
+        layout: of the window.
+        prior: what is known from before.
+
+    Attributes:
+        pivot_m: what the map is turned about, east and north, 2 (m).
+    """
+
+    def __init__(self, layout: Layout, prior: Prior) -> None:
+        self._size, self._width = layout.length * layout.width, layout.width
+        columns = [_columns(layout, key) for key in prior.keys]
+        at = np.concatenate(columns or [np.zeros(0, dtype=np.intp)]).astype(np.intp)
+        kept, gone = np.flatnonzero(at >= 0), np.flatnonzero(at < 0)
+        self._at, self._reference = at[kept], prior.reference[kept]
+        self._matrix, self._vector = _drifted(prior, layout)
+        if len(gone):
+            # Held where they were, they would not let the map turn.
+            self._matrix, self._vector = marginalised(self._matrix, self._vector, gone, kept)
+        changed = _turning(prior, at, kept)
+        self._places, self._speeds = changed.places, changed.speeds
+        base_m = np.array(layout.state.base_place()[:2])
+        self.pivot_m = pivot(self._matrix, self._reference, changed, base_m)
+        self._turning = np.concatenate([self._places, self._speeds])
+
+    def part(self, numbers: Unknowns, x: Array) -> Self:
+        """The same of a part of the window, with all walks that it has not held where they are.
+
+        Args:
+            numbers: of the part.
+            x: the window's estimate, flat.
+        """
+        other, moved = copy(self), self._moved(x, self._turned_by(x))
+        layout, at = numbers.layout, numbers.place[self._at]
+        kept, held = np.flatnonzero(at >= 0), np.flatnonzero(at < 0)
+        inside = (pairs[(at[pairs] >= 0).all(axis=1)] for pairs in (self._places, self._speeds))
+        places, speeds = (np.searchsorted(kept, pairs) for pairs in inside)
+        vars(other).update(
+            _size=layout.length * layout.width,
+            _width=layout.width,
+            _at=at[kept],
+            _reference=self._reference[kept],
+            _matrix=self._matrix[np.ix_(kept, kept)],
+            _vector=self._vector[kept] - self._matrix[np.ix_(kept, held)] @ moved[held],
+            _places=places,
+            _speeds=speeds,
+            _turning=np.concatenate([places, speeds]),
+        )
+        return other
+
+    def first(self, x: Array) -> Array:
+        """The estimate with the border where the prior was linearised, turned as the map is now, flat."""
+        first, there = x.copy(), self._reference.copy()
+        turn_pairs(there, self._places, self.pivot_m, self._turned_by(x))
+        lasting = self._at >= self._size
+        first[self._at[lasting]] = there[lasting]
+        return first
+
+    def cost(self, x: Array) -> float:
+        """Its negative log likelihood at an estimate, flat, up to a constant."""
+        moved = self._moved(x, self._turned_by(x))
+        return float(0.5 * moved @ (self._matrix @ moved) - self._vector @ moved)
+
+    @property
+    def coupled(self) -> Integers:
+        """Pairs of columns that it ties together, m × 2, as `groups.Groups` takes them."""
+        tied = self._matrix != 0.0
+        # Turned with the map, what one of east and north is tied to the other is as well.
+        pairs = self._turning
+        tied[pairs] |= tied[pairs[:, ::-1]]
+        tied[:, pairs] |= tied[:, pairs[:, ::-1]]
+        columns = np.where(self._at < self._size, self._at, self._at - self._size + self._width)
+        return np.ascontiguousarray(columns[np.argwhere(tied)], dtype=np.int64)
+
+    def add(self, chain: Chain, shared: Sequence[SharedNumbers], x: Array) -> None:
+        """Add it to the normal equations at an estimate.
+
+        Args:
+            chain: takes it.
+            shared: what each group of the chain has in common with it.
+            x: the estimate, flat.
+        """
+        turned_by, matrix = self._turned_by(x), self._matrix.copy()
+        vector, by = self._vector - matrix @ self._moved(x, turned_by), np.empty((len(self._turning), 2, 2))
+        by[:] = turning(turned_by)
+        change_pairs(matrix, vector, self._turning, by)
+        for strand, (moving, lasting, own, rest) in zip(chain.strands, shared, strict=True):
+            if len(strand.group.walks):
+                strand.diagonal[0][own[:, None], own] += matrix[moving[:, None], moving]
+                strand.border[0][own[:, None], rest] += matrix[moving[:, None], lasting]
+                strand.gradient[0][own] += vector[moving]
+            else:
+                strand.corner[rest[:, None], rest] += matrix[lasting[:, None], lasting]
+                strand.corner_gradient[rest] += vector[lasting]
+
+    def shared(self, groups: Iterable[Group]) -> list[SharedNumbers]:
+        """What it and each of some groups of walks have in common."""
+        found = []
+        for group in groups:
+            moving, own = _common(self._at, group.columns)
+            lasting, rest = _common(self._at - self._size, group.lasting)
+            found.append(SharedNumbers(moving, lasting, own, rest))
+        return found
+
+    def _turned_by(self, x: Array) -> float:
+        """By how much the map is turned about the pivot since the prior was linearised (rad)."""
+        was_m = self._reference[self._places] - self.pivot_m
+        return turn_between(was_m, x[self._at[self._places]] - self.pivot_m)
+
+    def _moved(self, x: Array, turned_by: float) -> Array:
+        """What the prior takes for deviations from its reference: see `gauge_turn.moved_from`."""
+        pairs = self._places, self._speeds
+        return np.asarray(moved_from(self._reference, x[self._at], *pairs, self.pivot_m, turned_by))
+
+
+def _turning(prior: Prior, columns: Indices, kept: Indices) -> Turning:
+    """Which of a prior's numbers change with a turn of the map, counted among those that are still there."""
+    places, speeds, headings, start = [], [], [], 0
+    for kind, _ in prior.keys:
+        if kind in ("walk", "free", "stand") and columns[start] >= 0:
+            places.append((start, start + 1))
+        if kind == "free" and columns[start + PLACES] >= 0:
+            speeds.append((start + PLACES, start + PLACES + 1))
+        if kind == "walk" and columns[start + HEADING] >= 0:
+            headings.append(start + HEADING)
+        start += SIZES[kind]
+    pairs = [np.searchsorted(kept, np.array(each, dtype=np.intp).reshape(-1, 2)) for each in (places, speeds)]
+    return Turning(pairs[0], pairs[1], np.searchsorted(kept, np.array(headings, dtype=np.intp)))
+
+
+def _drifted(prior: Prior, layout: Layout) -> tuple[Array, Array]:
+    """A prior's matrix and vector, with altimeters that have walked on since.
+
+    A window's altimeter is off by one number all along. By as much as the window has grown since its oldest
+    keyframes went, as many seconds will go with the next ones.
+    """
+    kinds = [kind for kind, _ in prior.keys]
+    starts = np.cumsum([0, *(SIZES[kind] for kind in kinds)])[:-1]
+    rows = starts[[kind == "altimeter" for kind in kinds]]
+    walked_m2 = physics.HEIGHT_WALK_M_PER_ROOT_S**2 * OLDEST * float(layout.grid[-1] - layout.grid[0])
+    if not len(rows) or walked_m2 <= 0.0:
+        return prior.matrix, prior.vector
+    matrix, vector = prior.matrix.copy(), prior.vector.copy()
+    own = matrix[np.ix_(rows, rows)] + np.eye(len(rows)) / walked_m2
+    gain = np.linalg.solve(own, matrix[rows])
+    matrix -= matrix[:, rows] @ gain
+    vector -= gain.T @ vector[rows]
+    return 0.5 * (matrix + matrix.T), vector
+
+
+def _columns(layout: Layout, key: Key) -> Indices:
+    """Flat columns of a prior's block; −1 where it is no longer there."""
+    kind, number = key
+    size = layout.length * layout.width
+    if kind in ("walk", "free"):
+        start = layout.column_of.get(number)
+    elif kind == "stand":
+        start = layout.stands.get(number)
+    else:
+        start = layout.technologies.get(key)
+    if start is None:
+        return np.full(SIZES[kind], -1)
+    found = np.arange(start, start + SIZES[kind]) + (0 if kind in ("walk", "free") else size)
+    if kind == "free" and layout.walks[start // STATES].way is not None:
+        # Its bearer has a PDR unit now.
+        found[PLACES:] = -1
+    return found
+
+
+def _common(at: Indices, columns: Indices) -> tuple[Indices, Indices]:
+    """Where each of some columns stands among others, and which of those it is."""
+    place = np.minimum(np.searchsorted(columns, at), max(len(columns) - 1, 0))
+    among = np.flatnonzero(columns[place] == at) if len(columns) else np.zeros(0, dtype=np.intp)
+    return among, place[among]

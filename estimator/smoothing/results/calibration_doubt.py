@@ -1,0 +1,102 @@
+"""What it does to the places of a solved chain that a technology, or a radio, may be calibrated, or not."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from msgspec.structs import replace
+
+from estimator.fusion.learned.calibration import Calibration, doubt
+from estimator.graph.dense import Array
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.learning.delays import pulling_of
+from estimator.smoothing.learning.radios import told_by
+from estimator.smoothing.learning.suspected_delays import Suspect, suspects
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.results.heading_arcs import responses
+
+
+def scales(layout: Layout) -> dict[int, Calibration]:
+    """What is thought of scales of ranging technologies, by where they are in an estimate, flat."""
+    state, size = layout.state, layout.length * layout.width
+    found = {}
+    for (kind, source), start in layout.technologies.items():
+        name = state.sources[source]
+        known = state.calibrations.get(name) if kind == "range" else None
+        if known is not None:
+            # Each solution of the whole incident has a prior of its own.
+            narrow, assumed = state.narrow_sigma(name), state.range_scale_sigma(name)
+            found[size + start] = replace(known, narrow=narrow, assumed=assumed)
+    return found
+
+
+def doubt_scales(layout: Layout, solved: Solution, found: tuple[Array, Array, Array]) -> None:
+    """Let covariances hold that ranging technologies may be of the other kind than they were taken for.
+
+    Args:
+        layout: of the chain.
+        solved: its solution, whose chain is solved.
+        found: covariances of the keyframes, of each with the next one and of the border, as
+            `Chain.covariances` gives them; changed in place.
+    """
+    judged = scales(layout)
+    across = responses(layout, solved, list(judged))
+    for i, (row, known) in enumerate(judged.items()):
+        factor = doubt(known, float(solved.x[row]), float(across[row, i]))
+        _widen(layout, found, factor, across[:, i])
+
+
+def suspected(problem: Problem, solved: Solution) -> list[Suspect]:
+    """Radios that may be off, though they are trusted.
+
+    Args:
+        problem: of the chain.
+        solved: its solution, whose chain is solved.
+    """
+    told = told_by(problem, solved)
+    return list(suspects(problem, solved, told, pulling_of(problem, solved, told)))
+
+
+def doubt_delays(problem: Problem, solved: Solution, found: tuple[Array, Array, Array]) -> None:
+    """Let covariances hold that radios may have an antenna delay.
+
+    Args:
+        problem: of the chain.
+        solved: its solution, whose chain is solved.
+        found: see `doubt_scales`; changed in place.
+    """
+    for suspect in suspected(problem, solved):
+        _widen(problem.layout, found, suspect.off_m2, suspect.moved)
+
+
+def _widen(layout: Layout, found: tuple[Array, Array, Array], square: float, moved: Array) -> None:
+    """Add the mean square of a number to covariances of what moves by so much for each of its units."""
+    keyframes, ahead, border = found
+    size = layout.length * layout.width
+    walks, lasting = moved[:size].reshape(layout.length, -1, STATES), moved[size:]
+    keyframes += square * np.einsum("kwi,kwj->kwij", walks, walks)
+    ahead += square * np.einsum("kwi,kwj->kwij", walks[:-1], walks[1:])
+    border += square * np.outer(lasting, lasting)
+
+
+def doubted(
+    judged: dict[int, Calibration], x: Array, told: Array, radios: Sequence[Suspect], start: int
+) -> Array:
+    """What is to be added to one place's covariance, 3 × 3 (m²).
+
+    Args:
+        judged: see `scales`.
+        x: the estimate, flat.
+        told: columns of the covariance for these scales, size × m.
+        radios: see `suspected`.
+        start: where the place is.
+    """
+    found = np.zeros((3, 3))
+    for i, (row, known) in enumerate(judged.items()):
+        across = told[start : start + 3, i]
+        found += doubt(known, float(x[row]), float(told[row, i])) * np.outer(across, across)
+    for radio in radios:
+        moved = radio.moved[start : start + 3]
+        found += radio.off_m2 * np.outer(moved, moved)
+    return found

@@ -1,0 +1,114 @@
+"""The rivals of units after the ranges of a tick."""
+
+import math
+
+import numpy as np
+import pytest
+
+from estimator.fusion.learned import rival
+from estimator.fusion.memory.ledger import RANGE, RSSI
+from estimator.fusion.rows.prediction import predict
+from estimator.fusion.rows.rival_kernels import (
+    COVARIANCE,
+    NONE,
+    NUMBER,
+    ODDS,
+    OF,
+    RANGED,
+    STATE,
+    TELLS,
+    RivalUpdate,
+    T,
+    Units,
+    told_by_links,
+    update_rivals,
+)
+from estimator.fusion.rows.rows import Row, table_of
+from estimator.graph.dense import Array
+
+UNITS, BREADCRUMB, TECHNOLOGY = (0, 6), 3, 9
+X = np.array([1.0, 2.0, 0.0, 8.0, -3.0, 0.5, 20.0, 0.0, 0.0, 0.2, 0.01])
+POSE_T = np.array([7.5, 8.0])
+NOBODY = np.array([NONE, NONE])
+
+
+def ranged(unit: int, link: int, range_m: float = 9.0) -> Row:
+    return Row(RANGE, unit, range_m, 0.2, 0.1, 1.5, 3.0, 0.3, BREADCRUMB, TECHNOLOGY, link=link, b_e=5.0)
+
+
+def heard(unit: int, link: int, power_dbm: float = -70.0) -> Row:
+    return Row(
+        RSSI, unit, power_dbm, 40.0, 0.05, -8.0, 12.0, 6.0, BREADCRUMB, TECHNOLOGY, constant=-45.0, link=link
+    )
+
+
+def follow(
+    *rows: Row, pose_t: Array = POSE_T, rivals: Array = NOBODY, links: Array | None = None
+) -> RivalUpdate:
+    table = table_of({}, [], np.array(rows, dtype=np.float64))
+    units = np.column_stack([UNITS, pose_t, np.ones(len(UNITS)), rivals])
+    half = np.random.default_rng(5).normal(0.0, 1.0, (len(X), len(X)))
+    seen = predict(table, half @ half.T + np.eye(11), np.zeros(11), X)
+    known = np.zeros((0, TELLS)) if links is None else links
+    return update_rivals(table, np.full(len(rows), 7.0), Units(units, known), seen, X)
+
+
+def told(*ranges: tuple[int, float]) -> Array:
+    """Ranges of links at epochs (s)."""
+    found = np.zeros((len(ranges), rival.TOLD))
+    found[:, [rival.LINK, rival.EPOCH]] = ranges
+    return found
+
+
+def test_a_believed_unit_takes_its_rival_along() -> None:
+    found = follow(ranged(UNITS[0], 1)).rivals[0]
+    assert found[T] == 7.5
+    assert found[ODDS] < rival.RARE + 1.0
+    assert math.dist(found[STATE][:2].tolist(), X[:2].tolist()) < 5.0
+    assert found[COVARIANCE][0] > 0.0
+
+
+def test_units_of_one_tick_are_followed_as_each_alone() -> None:
+    rows = ranged(UNITS[0], 1), ranged(UNITS[1], 4, 12.0), ranged(UNITS[0], 2)
+    both, first, second = follow(*rows), follow(rows[0], rows[2]), follow(rows[1])
+    np.testing.assert_allclose(both.rivals[0], first.rivals[0])
+    np.testing.assert_allclose(both.rivals[1], second.rivals[1])
+    np.testing.assert_allclose(both.links, np.vstack([first.links, second.links]))
+    assert both.links[:, [OF, 1]].tolist() == [[0.0, 1.0], [0.0, 2.0], [1.0, 4.0]]
+
+
+def test_a_rival_goes_on_from_where_it_was() -> None:
+    before = follow(ranged(UNITS[0], 1))
+    after = follow(ranged(UNITS[0], 2), pose_t=POSE_T + 1.0, rivals=before.rivals, links=before.links)
+    assert after.rivals[0, T] == 8.5
+    assert after.links[:, 1].tolist() == [1.0, 2.0]
+    assert after.rivals[0, ODDS] == rival.odds_of(after.links[:, NUMBER], 8.5)
+
+
+def test_of_whom_is_not_asked_there_is_no_rival_and_yet_he_was_heard() -> None:
+    found = follow(ranged(UNITS[0], 1), pose_t=np.array([math.nan, 8.0]))
+    assert found.heard
+    assert np.isnan(found.rivals).all()
+    assert not len(found.links)
+    assert not follow(ranged(UNITS[0], -1)).heard
+
+
+def test_a_link_that_is_heard_again_at_once_tells_nothing_more() -> None:
+    once = told_by_links(np.zeros((0, 3)), told((3, 5.0)), np.array([2.0]))
+    twice = told_by_links(once, told((3, 5.0)), np.array([2.0]))
+    later = told_by_links(once, told((3, 5.0 + rival.SPELL_S)), np.array([2.0]))
+    assert once.tolist() == twice.tolist() == [[3.0, 5.0, 2.0]]
+    assert later[0, 2] == pytest.approx(2.0 + 2.0 * math.exp(-rival.SPELL_S / rival.MEMORY_S))
+
+
+def test_links_stand_in_order_and_are_forgotten_once_they_have_long_been_silent() -> None:
+    known = np.array([[2.0, 0.0, 1.0], [7.0, 15.0, 1.0]])
+    found = told_by_links(known, told((9, 25.0), (1, 25.0)), np.array([20.0, -20.0]))
+    assert found.tolist() == [[1.0, 25.0, rival.LEAST], [7.0, 15.0, 1.0], [9.0, 25.0, rival.MOST]]
+
+
+def test_it_is_known_when_a_rival_was_last_ranged_however_much_was_heard_since() -> None:
+    silent = follow(heard(UNITS[0], 1)).rivals
+    ranged_at_7 = follow(ranged(UNITS[0], 1), heard(UNITS[0], 2)).rivals
+    later = follow(heard(UNITS[0], 1), pose_t=POSE_T + 1.0, rivals=ranged_at_7).rivals
+    assert (silent[0, RANGED], ranged_at_7[0, RANGED], later[0, RANGED]) == (-math.inf, 7.0, 7.0)

@@ -1,0 +1,62 @@
+"""Sums at once: what comes of them is what would come of them one after the other."""
+
+import threading
+from collections.abc import Callable, Iterable
+
+import numpy as np
+import pytest
+
+from estimator.smoothing.chain import chain
+from estimator.smoothing.chain.parallel import in_parallel
+from tests.estimator.smoothing.windows import fused, problem_of
+from tests.estimator.walks import two_responders
+
+SOON_S = 10.0
+
+
+def test_what_it_gives_is_in_the_order_of_the_items_whichever_ends_first() -> None:
+    second_ended = threading.Event()
+
+    def work(name: str, number: int) -> str:
+        if name == "first" and not second_ended.wait(SOON_S):
+            return "the second one has not begun"
+        second_ended.set()
+        return f"{name} {number}"
+
+    assert in_parallel(work, ["second", "first"], [1, 2]) == ["second 1", "first 2"]
+
+
+def test_what_one_of_them_raises_is_raised_when_all_have_ended() -> None:
+    ended: list[int] = []
+
+    def work(number: int) -> None:
+        if number < 3:
+            raise ValueError(f"the chain of walk {number} is not positive definite")
+        ended.append(number)
+
+    with pytest.raises(ValueError, match="walk 1"):
+        in_parallel(work, [1, 2, 3, 4, 5, 6])
+    assert sorted(ended) == [3, 4, 5, 6]
+
+
+def test_a_window_solved_at_once_is_the_same_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = problem_of(fused(two_responders()))
+    x = problem.layout.start()
+    one_by_one = problem.solve(x)
+    used: list[str] = []
+
+    def watched(work: Callable[..., object], *items: Iterable[object]) -> list[object]:
+        used.append(getattr(work, "__qualname__", "?"))
+        return in_parallel(work, *items)
+
+    monkeypatch.setattr(chain, "LARGE", 0)
+    monkeypatch.setattr(chain, "in_parallel", watched)
+    together = problem.solve(x)
+    assert len(together.chain.strands) > 2
+    assert used
+    assert np.array_equal(together.x, one_by_one.x)
+    assert together.cost == one_by_one.cost
+    one_by_one.chain.reduce()
+    together.chain.reduce()
+    for found, expected in zip(together.chain.covariances(), one_by_one.chain.covariances(), strict=True):
+        assert np.array_equal(found, expected)

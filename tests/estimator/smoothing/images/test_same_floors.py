@@ -1,0 +1,33 @@
+"""Solutions of a window that are compared with the same floors between radios."""
+
+import numpy as np
+
+from estimator.smoothing.images.likeliest_image import likeliest_image
+from estimator.smoothing.images.same_floors import hold_floors
+from tests.estimator.smoothing.images.test_flip_ambiguity import TWO, crossing, solved_of
+
+
+def test_heights_that_nobody_measures_do_not_tell_which_of_two_solutions_is_likelier() -> None:
+    problem, solved = solved_of(crossing(TWO))
+    higher = solved.x.copy()
+    problem.layout.states(higher, 0)[:, 2] += 3.0
+    hold_floors(problem, solved)
+    problem.rows.widen(solved.x, problem.rows.jacobian(solved.x))
+    known = problem.rows.sigma.copy()
+    problem.rows.widen(higher, problem.rows.jacobian(higher))
+    assert np.array_equal(problem.rows.sigma, known)
+
+
+def test_what_is_known_of_floors_stays_where_it_is_likelier() -> None:
+    problem, solved = solved_of(crossing(TWO))
+    hold_floors(problem, solved)
+    assert problem.rows.floors is not None
+    held, higher = problem.rows.floors.copy(), solved.x.copy()
+    problem.layout.states(higher, 0)[:, 2] += 3.0
+    assert hold_floors(problem, solved._replace(x=higher)).cost <= solved.cost
+    assert np.array_equal(problem.rows.floors, held)
+
+
+def test_floors_are_told_by_heights_again_after_the_images() -> None:
+    problem, solved = solved_of(crossing(TWO))
+    assert likeliest_image(problem, solved).problem.rows.floors is None

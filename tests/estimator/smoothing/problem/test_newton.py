@@ -1,0 +1,36 @@
+"""Where a solution may start from."""
+
+import numpy as np
+
+from estimator.smoothing.keyframes.walks import STATES
+from tests.estimator.smoothing.learning.test_wrong_steps import walk
+from tests.estimator.smoothing.windows import fused, problem_of
+
+
+def test_since_an_epoch_a_unit_goes_its_own_way_and_before_it_nothing_changes() -> None:
+    problem = problem_of(fused(walk()))
+    layout = problem.layout
+    x = layout.start()
+    since = int(np.searchsorted(layout.grid, 60.0))
+    kinked = x.copy()
+    kinked[: layout.length * layout.width].reshape(layout.length, STATES)[since + 1 :, :2] += 5.0
+    assert max(np.abs(problem.motions(kinked)[0].residual[since])) > 4.0
+    reckoned = problem.going.reckoned(kinked, float(layout.grid[since]))
+    assert np.abs(problem.motions(reckoned)[0].residual[since:]).max() < 1e-9
+    before = slice(0, (since + 1) * layout.width)
+    assert np.array_equal(reckoned[before], x[before])
+    border = slice(layout.length * layout.width, None)
+    assert np.array_equal(reckoned[border], x[border])
+
+
+def test_rows_that_are_left_out_neither_pull_nor_cost() -> None:
+    problem = problem_of(fused(walk()))
+    left_out = np.arange(0, len(problem.rows.pairs), 3)
+    others = problem.without(left_out)
+    x = problem.layout.start()
+    found = others.solve(x)
+    assert abs(found.cost - problem.solve(x).cost) > 1.0
+    problem.rows.readings.value[left_out] += 50.0
+    again = others.solve(x)
+    assert np.abs(again.x - found.x).max() < 1e-9
+    assert again.cost == found.cost

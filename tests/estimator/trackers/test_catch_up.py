@@ -1,0 +1,123 @@
+"""A gateway that is always far behind: what is shown keeps up, and is a function of the log all the same."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from estimator.estimate import NodeEstimate
+from estimator.fusion.memory.state import FusionState
+from estimator.measurements import AnyReading
+from estimator.smoothing import window
+from estimator.trackers.catch_up import FOLLOWED, OWED, PAID, SOON, CatchUp
+from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.walks import two_responders
+
+BEHIND_S, LAST_S = 40, 100
+WALK = two_responders(LAST_S + 60)
+Picture = list[NodeEstimate]
+
+
+def of_the_second(second: int, *, behind: bool) -> list[AnyReading]:
+    """What a gateway has measured in a second: the one behind bears ff2, who has no unit."""
+    mine = [r for r in WALK if ("ff2" in (getattr(r, "node", ""), getattr(r, "a", ""))) == behind]
+    return [r for r in mine if second - 1 < r.t <= second]
+
+
+def batches(last_s: int = LAST_S) -> Iterator[list[AnyReading]]:
+    """A batch of each gateway a second, until both have posted all up to `last_s`."""
+    for second in range(last_s + BEHIND_S + 1):
+        yield of_the_second(second, behind=False) if second <= last_s else []
+        yield of_the_second(second - BEHIND_S, behind=True)
+
+
+def test_a_gateway_that_is_always_behind_has_the_window_solved_a_few_times_a_second_at_most(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    solved: list[float] = []
+    refresh = window.refresh
+
+    def counted(state: FusionState, solved_t: float) -> bool:
+        solved.append(state.newest_t)
+        return refresh(state, solved_t)
+
+    monkeypatch.setattr(window, "refresh", counted)
+    tracker, before = KirchhoffTracker(), 0
+    for number, batch in enumerate(batches(LAST_S)):
+        if number == 2 * (BEHIND_S + 10):
+            before = len(solved)
+        if number == 2 * LAST_S:
+            break
+        tracker.fold(batch)
+        tracker.estimates()
+    assert (len(solved) - before) / (LAST_S - BEHIND_S - 10) < 4.0
+
+
+def test_what_is_told_hangs_neither_on_what_was_asked_nor_on_restarts() -> None:
+    rarely, often, killed = KirchhoffTracker(), KirchhoffTracker(), KirchhoffTracker()
+    hurried = 0
+    for number, batch in enumerate(batches(70)):
+        for reading in batch:
+            often.fold([reading])
+        often.estimates()
+        often.settled()
+        for tracker in (rarely, killed):
+            tracker.fold(batch)
+        if number % 9 == 4:
+            killed = KirchhoffTracker.restore(killed.snapshot())
+        if number % 26 == 25:
+            assert rarely.estimates() == often.estimates() == killed.estimates()
+            assert rarely.take_notices() == often.take_notices() == killed.take_notices()
+            hurried += rarely.settled() is not None
+    assert hurried >= 2
+
+
+def test_once_nothing_is_late_any_more_all_is_as_if_nothing_had_been() -> None:
+    late, in_time = KirchhoffTracker(), KirchhoffTracker()
+    for batch in batches(60):
+        late.fold(batch)
+        late.estimates()
+    assert late.settled() is not None
+    for second in range(61):
+        for behind in (True, False):
+            in_time.fold(of_the_second(second, behind=behind))
+    settled = late.settled()
+    assert settled is not None
+    assert settled.estimates() == in_time.estimates()
+    for second in range(61, LAST_S + 60):
+        for tracker in (late, in_time):
+            for behind in (True, False):
+                tracker.fold(of_the_second(second, behind=behind))
+    assert late.settled() is None
+    assert late.estimates() == in_time.estimates()
+
+
+def hurry_after(lateness: list[int]) -> CatchUp:
+    """A tick goes by after each of these, and then something comes so late; 0: nothing does."""
+    hurry = CatchUp()
+    hurry.go_on(1000, 1000)
+    for now, late in enumerate(lateness, start=1001):
+        hurry.go_on(now, now)
+        if late:
+            hurry.comes(now - late, now)
+    return hurry
+
+
+@pytest.mark.parametrize(
+    "lateness",
+    [[SOON - 1] * 600, [PAID] * 600, [OWED], [OWED] + [0] * (OWED // PAID) + [OWED], [SOON + 1, 0] * 300],
+)
+def test_what_is_late_now_and_then_or_by_little_is_folded_as_it_should_be(lateness: list[int]) -> None:
+    assert not hurry_after(lateness).on
+
+
+@pytest.mark.parametrize("lateness", [[2 * OWED], [OWED, OWED], [50] * 3, [2 * PAID] * 60])
+def test_what_goes_on_coming_late_is_folded_in_a_hurry(lateness: list[int]) -> None:
+    assert hurry_after(lateness).on
+
+
+def test_the_sure_chain_stays_behind_what_comes_late_and_catches_up_afterwards() -> None:
+    steady = hurry_after([50] * 600)
+    assert steady.front == 1600 - 51
+    following = 50 // (FOLLOWED - 1) + 1
+    assert hurry_after([50] * 600 + [0] * (following - 3)).on
+    assert not hurry_after([50] * 600 + [0] * following).on
