@@ -1,8 +1,9 @@
 """Who draws trails asks for the tracks of what moves alone."""
 
+import httpx2
 import pytest
 
-from tests.running import Post
+from tests.running import Post, eventually
 
 START_T = 1_763_712_000.0
 
@@ -18,7 +19,14 @@ def two_and_a_base(post: Post) -> str:
     ]
     post.telemetry(incident, "b0", readings)
     post.frame(incident, min_seq=1)
+    # While the process for sums starts, 504 says to ask again.
+    eventually(lambda: smoothed(post, incident).status_code == 200, within_s=60.0)
     return incident
+
+
+def smoothed(post: Post, incident: str) -> httpx2.Response:
+    """The smoothed tracks."""
+    return post.http.get(f"/incidents/{incident}/tracks", params={"view": "smoothed"})
 
 
 @pytest.mark.parametrize("view", ["live", "smoothed"])
