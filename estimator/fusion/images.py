@@ -12,6 +12,8 @@ from estimator.graph.dense import Array
 ALWAYS = math.inf
 """Since when somebody's way would be another one whose unit is worn another way: its beginning tells of it,
 and no moment at which he may have changed sides."""
+EVER = -math.inf
+"""The same of a whole map of which nothing tells where north is."""
 
 
 class Image(msgspec.Struct, frozen=True, array_like=True):
@@ -80,7 +82,7 @@ class Alternative(msgspec.Struct, frozen=True, array_like=True):
         of: number of the node whose way would be another one: his own, or somebody's who takes him along.
         share: how likely that is.
         image: where he would be now, as an image of his place.
-        since_t: from when on that way would be another one (s), or `ALWAYS`.
+        since_t: from when on that way would be another one (s), `ALWAYS` or `EVER`.
         way: the image of it.
     """
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from estimator.fusion.images import Alternative, Image
+from estimator.fusion.images import EVER, Alternative, Image
 from estimator.graph.dense import Array
 from estimator.smoothing.images.alternatives import Mode
 from estimator.smoothing.keyframes.layout import Layout
@@ -32,6 +32,9 @@ def still_likely(problem: Problem, solved: Solution) -> tuple[Problem, Solution,
     """
     modes: list[Mode] = []
     for other, images in _begun_before(problem.layout):
+        if problem.prior is None and other.since_t == EVER:
+            # The window knows all that speaks for it and against it: see `unknown_north`.
+            continue
         prior = None if problem.prior is None else problem.prior.imaged(images)
         there = Problem(problem.layout, problem.rows, prior)
         try:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.fusion.images import Image
+from estimator.fusion.images import EVER, Image
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
 from estimator.smoothing.images.alternatives import Mode, same_now
@@ -33,6 +33,7 @@ from estimator.smoothing.images.near_radios import starts_near_radios
 from estimator.smoothing.images.parts import Parts
 from estimator.smoothing.images.same_floors import hold_floors
 from estimator.smoothing.images.solutions import solutions
+from estimator.smoothing.images.unknown_north import turned_maps
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
@@ -109,9 +110,15 @@ def likeliest_image(problem: Problem, solved: Solution, effort: Effort = LIVE) -
     for mode in apart:
         if not any(same_now(problem.layout, mode.x, x) for x in (solved.x, *(m.x for m in (*before, *told)))):
             told.append(mode)
+    # How all of a map is turned nobody finds out by asking again.
+    sides = [mode for mode in before if mode.since_t != EVER]
+    if problem.prior is None:
+        was = solved
+        solved, turned = turned_maps(problem, solved)
+        told = [*(told if solved is was else []), *turned]
     problem.rows.widen(solved.x, solved.linear.jacobian)
     problem.rows.floors = None
-    open_now = new or bool(before) or any(open_to.values())
+    open_now = new or bool(sides) or any(open_to.values())
     return JudgedImages(problem, solved, [*before, *told], open_now, frozenset(open_to))
 
 
