@@ -6,6 +6,7 @@ from itertools import groupby
 
 from msgspec.structs import replace
 
+from estimator.fusion.learned.report_period import Reported
 from estimator.fusion.memory.state import FusionState
 from estimator.inertial.displacement import InertialDisplacement
 from estimator.measurements.displacement import Displacement
@@ -52,8 +53,11 @@ def joined(state: FusionState, readings: Sequence[Displacement]) -> list[Displac
 
 
 def _is_copy(one: Displacement, other: Displacement) -> bool:
-    if one.from_t != other.from_t:
-        return False
+    return one.from_t == other.from_t and says_the_same(one, other)
+
+
+def says_the_same(one: Displacement | Reported, other: Displacement | Reported) -> bool:
+    """Whether two reports of one unit tell of the same step, and of the same heading if they tell of one."""
     near = math.dist(one.delta_m, other.delta_m) <= COPY
     if one.heading_rad is None or other.heading_rad is None:
         return near and one.heading_rad is other.heading_rad

@@ -17,7 +17,7 @@ from estimator.fusion.motion.coasting import mark_after, onward_m
 from estimator.fusion.motion.recent_places import Mark
 from estimator.fusion.motion.silence import SILENT_S, went_on
 from estimator.fusion.motion.steps import FIRST_DURATION_S
-from estimator.fusion.readings.same_epoch import COPY, joined
+from estimator.fusion.readings.same_epoch import COPY, joined, says_the_same
 from estimator.inertial.displacement import InertialDisplacement
 from estimator.measurements.displacement import Displacement
 
@@ -84,7 +84,7 @@ def is_copy(cadence: Cadence, told: Reported) -> bool:
     """
     *older, last = cadence.recent
     whole_of_it = told.heading_rad is not None and math.hypot(*told.delta_m) > COPY
-    if _same(last, told):
+    if says_the_same(last, told):
         # Who walks evenly reports the same again, but at his unit's own time.
         waited_s, usual_s = told.t - last.t, cadence.usual_s
         if usual_s is not None and waited_s < SOON * usual_s:
@@ -92,7 +92,7 @@ def is_copy(cadence: Cadence, told: Reported) -> bool:
         period_s = cadence.period_s
         return whole_of_it and period_s is not None and not is_whole(waited_s / period_s)
     # One that is older than another has to be the same in every number, of which a heading is one.
-    return whole_of_it and any(_same(one, told) for one in older)
+    return whole_of_it and any(says_the_same(one, told) for one in older)
 
 
 def walks_on(cadence: Cadence, told: Reported, period_s: float) -> bool:
@@ -109,14 +109,6 @@ def walks_on(cadence: Cadence, told: Reported, period_s: float) -> bool:
     usual_mps = sorted(paces_mps)[len(paces_mps) // 2]
     slowest_mps = min(paces_mps[-1], math.hypot(*told.delta_m) / period_s)
     return usual_mps > PACE_MPS and slowest_mps > FULL * usual_mps
-
-
-def _same(one: Reported, other: Reported) -> bool:
-    if math.dist(one.delta_m, other.delta_m) > COPY:
-        return False
-    if one.heading_rad is None or other.heading_rad is None:
-        return one.heading_rad is other.heading_rad
-    return abs(one.heading_rad - other.heading_rad) <= COPY
 
 
 def odds_of_loss(cadence: Cadence, told: Reported, period_s: float) -> float:

@@ -38,7 +38,7 @@ def still_likely(problem: Problem, solved: Solution) -> tuple[Problem, Solution,
         prior = None if problem.prior is None else problem.prior.imaged(images)
         there = Problem(problem.layout, problem.rows, prior)
         try:
-            found = there.solve(_moved(problem.layout, solved.x, images), iterations=ITERATIONS)
+            found = there.solve(moved(problem.layout, solved.x, images), iterations=ITERATIONS)
         except ValueError:
             # It hangs in the air there: that is no solution.
             continue
@@ -72,7 +72,7 @@ def _after(mode: Mode, back: Mapping[int, Image]) -> Mode:
     return mode._replace(images=images)
 
 
-def _moved(layout: Layout, x: Array, images: Mapping[int, Image]) -> Array:
+def moved(layout: Layout, x: Array, images: Mapping[int, Image]) -> Array:
     """An estimate with nodes at images of where they are, flat."""
     there, size = x.copy(), layout.length * layout.width
     for i, walk in enumerate(layout.walks):

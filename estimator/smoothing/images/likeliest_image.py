@@ -32,7 +32,7 @@ from estimator.smoothing.images.image_starts import SAME_RAD, ImageSolution, Ima
 from estimator.smoothing.images.near_radios import starts_near_radios
 from estimator.smoothing.images.parts import Parts
 from estimator.smoothing.images.same_floors import hold_floors
-from estimator.smoothing.images.solutions import solutions
+from estimator.smoothing.images.solutions import FAR, solutions
 from estimator.smoothing.images.unknown_north import turned_maps
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.problem.newton import Problem
@@ -40,8 +40,6 @@ from estimator.smoothing.problem.solution import Solution
 
 LEAST_TRIED = 2
 """So many images of each way are solved at least, where there are many ways."""
-FAR = 600.0
-"""What an image costs more, in log likelihood, that is not solved at all."""
 
 
 class JudgedImages(NamedTuple):

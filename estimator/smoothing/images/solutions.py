@@ -20,6 +20,8 @@ from estimator.smoothing.problem.solution import Solution
 HELD, ALONE = 150.0, 10.0
 """What an image costs more, in log likelihood, that is given up with all others held where they are; and so
 where no reading ties him to any of them."""
+FAR = 600.0
+"""What an image costs more, in log likelihood, that is not solved at all."""
 LED = 4
 """So many times as many images are solved with all others held as are solved as a whole at most."""
 SLACKS_M = (1.0, 0.3, 0.1)

@@ -15,17 +15,15 @@ from estimator.fusion import physics
 from estimator.fusion.images import EVER, Image, mirrored, turned_about
 from estimator.graph.dense import Array
 from estimator.smoothing.images.alternatives import APART_M, Mode, same_now
-from estimator.smoothing.images.earlier_images import LEAST
+from estimator.smoothing.images.earlier_images import LEAST, moved
 from estimator.smoothing.images.local_solution import local_solution
-from estimator.smoothing.images.solutions import SLACKS_M
+from estimator.smoothing.images.solutions import FAR, SLACKS_M
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 
 TURNS_RAD = (0.5 * math.pi, math.pi, 1.5 * math.pi)
 """With the map as it is, so many turns have the second moments of all there are."""
-FAR = 600.0
-"""What a turn costs more, in log likelihood, of which directions are known: it is not solved."""
 
 
 def turned_maps(problem: Problem, solved: Solution) -> tuple[Solution, list[Mode]]:
@@ -94,27 +92,16 @@ def _reaches_out(layout: Layout, x: Array, centre_m: Array) -> bool:
 
 
 def _solved(problem: Problem, solved: Solution, images: Sequence[Image]) -> list[tuple[Image, Solution]]:
-    """The solutions that images of all of the map lead to, each once."""
-    found: list[tuple[Image, Solution]] = []
+    """The solutions that images of all that nobody has told a place lead to, each once."""
+    layout, found = problem.layout, list[tuple[Image, Solution]]()
+    free = [walk.number for walk in layout.walks if walk.node.role == "responder"]
+    free += [number for number in layout.stands if layout.state.life(number).absolute.told_m is None]
     for image in images:
-        x = _turned(problem.layout, solved.x, image)
+        x = moved(layout, solved.x, dict.fromkeys(free, image))
         if problem.at(x).cost > solved.cost + FAR:
             continue
         there = local_solution(problem, x, SLACKS_M, solved)
         known = (solved, *(one for _, one in found))
-        if there is not None and not any(same_now(problem.layout, there.x, one.x) for one in known):
+        if there is not None and not any(same_now(layout, there.x, one.x) for one in known):
             found.append((image, there))
     return found
-
-
-def _turned(layout: Layout, x: Array, image: Image) -> Array:
-    """An estimate with all that nobody has told a place turned, flat."""
-    there, size = x.copy(), layout.length * layout.width
-    for i, walk in enumerate(layout.walks):
-        if walk.node.role == "responder":
-            image.move(layout.states(there, i))
-    for number, start in layout.stands.items():
-        if layout.state.life(number).absolute.told_m is None:
-            own = slice(size + start, size + start + 2)
-            there[own] = image.of(there[own])
-    return there
