@@ -6,8 +6,8 @@ therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
 `FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `RSSI_POWER_DBM` and its sigma, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE`,
 `WALL_M`, `EXCESS_M` and the two after it, `UNHEARD_MEMORY_S`, `SET_OFF_BIAS_RADPS` (with plaza2 in view as
-well), and that the spread of gyro biases is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm. M
-marks what estimation.md reports as measured.
+well), and that the spread of gyro biases is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm.
+"Measured" stands beside figures that public recordings show.
 
 Some stand in compiled functions, which keep the number that they were compiled with: after a change remove
 `__pycache__` (decision 0007).
@@ -104,7 +104,7 @@ good to half a hectopascal (data sheet of BMP390), and weather changes pressure 
 HEIGHT_ZERO_M = 0.2
 """What one that was zeroed is off by: sensors repeat themselves to 3 Pa (data sheet of BMP390)."""
 HEIGHT_WALK_M_PER_ROOT_S = 0.015
-"""Weather, warmth and doors let what it is off by walk: by 0.6 m in ten minutes, 1.5 m in an hour."""
+"""Weather, warmth and doors let what it is off by walk: by 0.4 m in ten minutes, 0.9 m in an hour."""
 PRESSURE_SIGMA_M = 1.0
 PRESSURE_CORRELATION_S = 30.0
 """Draught and doors move pressure for about so long: readings within it share their error."""
@@ -118,7 +118,7 @@ RANGE_SCALE_SIGMA = 0.005
 OBSTRUCTED_SCALE = 0.1
 """By how much ranges are too long in all, where all are obstructed."""
 RANGE_SCALE_WIDE = 0.15
-"""M: a public UWB-like data set carries +7 % scale."""
+"""Measured: a public UWB-like data set carries +7 % scale."""
 UNCALIBRATED = 0.3
 """How many technologies have a scale of the wide kind."""
 RANGE_BIAS_SIGMA_M: dict[str, float] = {"uwb": 0.15, "ultrasound": 0.05, "rtt": 1.5}
@@ -130,7 +130,7 @@ DELAYED, DELAY_SIGMA_M = 0.02, 2.0
 """How many radios have an antenna delay that nobody has calibrated, and what it adds to their ranges: 10 ns
 there and back are 1.5 m; offsets of Wi-Fi RTT chips differ by some metres."""
 RANGE_NOISE = Mixture(outliers=0.1, shift=1.5, spread=3.0)
-"""Obstructed ranges are too long: M, Wi-Fi RTT's 95th percentile is at 4 to 6 m."""
+"""Obstructed ranges are too long: measured, Wi-Fi RTT's 95th percentile is at 4 to 6 m."""
 
 RUNS_MPS, FLIES_MPS = 5.0, 20.0
 """Nobody inside gets away faster, and no UAV: what a range grows by beyond it is an echo."""
@@ -141,14 +141,14 @@ ECHO_UNHEARD_S, ECHO_LOWER_S = 3.0, 3.0
 10 m too short for 0.3 s."""
 
 RSSI_SIGMA_DB = 6.0
-"""M: 5 to 7 dB."""
+"""Measured: 5 to 7 dB."""
 RSSI_POWER_DBM = -50.0
 RSSI_POWER_SIGMA_DB = 10.0
 """At a metre: -40 dBm in paper A, -59 dBm of a usual BLE beacon."""
 RSSI_EXPONENT = 2.2
 RSSI_EXPONENT_SIGMA = 0.4
 RSSI_EXPONENT_LEAST = 1.0
-"""Along a corridor, which guides waves, powers fall by 12 to 18 dB a decade: M, 14 at least."""
+"""Along a corridor, which guides waves, powers fall by 12 to 18 dB a decade: measured, 14 at least."""
 NEAR_M = 1.5
 NEAR_SIGMA_DB = 4.5
 """Paper A: relative ranges within 1.5 m are accurate, in fire as well."""

@@ -1,8 +1,8 @@
 """Noise with outliers: two-component mixtures, as weights for the next least-squares step (IRLS, EM).
 
-A redescending loss lets an outlier lose its pull (estimation.md, point 5: 0.87 m with Huber, 0.30 m with
-Cauchy). The mixture is such a loss with a meaning: each component says how often it happens, how wide it
-is and where it is centred, so an obstructed range may be too long but hardly too short.
+A redescending loss lets an outlier lose its pull, which a convex one such as Huber's does not. The mixture is
+such a loss with a meaning: each component says how often it happens, how wide it is and where it is centred,
+so an obstructed range may be too long but hardly too short.
 """
 
 from typing import NamedTuple

@@ -52,7 +52,7 @@ class Moved(NamedTuple):
 
 @njit(cache=True)
 def move(state: Array, delta_m: Array, duration_s: Array) -> Moved:
-    """P' = p + s Rz(ψ) δ and ψ' = ψ + β Δt (estimation.md, point 1): the unit's frame turns while it walks.
+    """P' = p + s Rz(ψ) δ and ψ' = ψ + β Δt: the unit's frame turns while it walks.
 
     The frame's turn halfway is used for the displacement, exact to second order in β Δt. The scale is that of
     steps: heights are not scaled, or an error of the air pressure's heights would stretch the whole map.

@@ -79,8 +79,8 @@ def range_at(squared_m2: float, scale_error: float, bias_m: float) -> Along:
 def predict_range(a: Array, b: Array, scale_error: Array, bias_m: Array) -> PairJacobian:
     """Range that a technology with a scale and a bias of its own reports: (1 + k) ‖a − b‖ + c.
 
-    Paper A's γ-noise range (before eq. 1, Jacobian eq. 19) with the two states of estimation.md, point 3. At
-    distance 0 the direction is undefined: there the Jacobian falls to 0 instead.
+    Paper A's γ-noise range (before eq. 1, Jacobian eq. 19) with scale and bias as states. At distance 0
+    the direction is undefined: there the Jacobian falls to 0 instead.
 
     Args:
         a: positions, m × 3 (m).

@@ -58,7 +58,7 @@ def rssi_at(heard_dbm: float, squared_m2: float, power_dbm: float, exponent: flo
 
 @njit(cache=True)
 def predict_rssi(heard_dbm: Array, a: Array, b: Array, power_dbm: Array, exponent: Array) -> PairJacobian:
-    """Received power by the log-distance law: P0 − 10 n log10 d, Gaussian in dB (estimation.md, point 4).
+    """Received power by the log-distance law: P0 − 10 n log10 d, Gaussian in dB.
 
     Places are never known as well as radios lie on each other: a power of more than there is at `ANTENNA_M`
     says that both ends are so near, and not by how much nearer, down to `TOUCHING_M`. It would otherwise

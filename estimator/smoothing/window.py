@@ -2,8 +2,8 @@
 
 Between two solutions the filter in `estimator.fusion` folds tick after tick into L and b. Each solution of
 the window puts the Kirchhoff matrix of its newest keyframe and of the border in the filter's place, so that
-no reading inside the window stays linearised at an estimate that has turned out to be wrong (estimation.md,
-6).
+no reading inside the window stays linearised at an estimate that has turned out to be wrong (decision
+0006).
 """
 
 from collections.abc import Collection

@@ -1,8 +1,7 @@
 """The default tracker: paper A's Kirchhoff state with headings, biases, scales and path loss as states.
 
 A responder has position, heading error ψ, gyro bias β and step scale s; a ranging technology has scale and
-bias; radio has P0 and n; static nodes have positions. Section numbers of estimation.md stand beside the
-code in `estimator.fusion`.
+bias; radio has P0 and n; static nodes have positions.
 """
 
 import math

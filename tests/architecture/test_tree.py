@@ -88,6 +88,18 @@ def test_files_and_names_that_documents_point_to_exist(name: str) -> None:
     assert lost == set()
 
 
+def test_documents_that_code_points_to_exist() -> None:
+    documents = {path.name for path in tracked() if path.suffix == ".md"}
+    lost = {
+        (str(path.relative_to(ROOT)), named)
+        for path in tracked()
+        if path.suffix in CODE
+        for named in re.findall(r"\b([\w-]+\.md)\b", path.read_text())
+        if named not in documents
+    }
+    assert lost == set()
+
+
 def defines(path: Path, name: str) -> bool:
     """Whether a module defines a function, a class or a constant."""
     defined = rf"^(?:def {name}\b|class {name}\b|(?:\w+, )*{name}\b[^=\n(]*=)"

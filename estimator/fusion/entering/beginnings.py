@@ -1,6 +1,6 @@
 """Where an undecided node is: every place that its sightings allow, and whether one is clearly the best.
 
-A range-only node starts as a ring, and after a straight path as two mirror images (estimation.md, point 7).
+A range-only node starts as a ring, and after a straight path as two mirror images.
 It enters the graph only once the second mode is clearly worse; the window is then solved again with all its
 sightings, each used once. Who moves cannot wait for that: what is older tells ever less of where he is now.
 After some seconds he is shown at the best mode, and the others are told as images of it (decision 0026).

@@ -1,4 +1,4 @@
-"""Standing still tells the gyro bias: ZARU (estimation.md, point 2).
+"""Standing still tells the gyro bias: ZARU (decision 0020).
 
 The true heading stays, so what the unit turns meanwhile is −β Δt. Reported headings are noisy, and their
 noise is not told: β is the slope of a line through those of a standstill, and what they scatter about it says

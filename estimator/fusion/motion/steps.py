@@ -184,7 +184,7 @@ class Step:
 
         Where nothing else tells heights, the Kirchhoff matrix keeps to the plane until distances contradict
         it, for the unit may yet show that it measures them; what it may have missed is told beside
-        (estimation.md, point 8).
+        (decision 0012).
         """
         if reading.delta_m[2] != 0.0 or isinstance(reading, InertialDisplacement):
             self._level, self._unseen_up_m2 = False, 0.0

@@ -1,4 +1,4 @@
-"""A node that lies elsewhere begins anew there (estimation.md, point 9), until more is known."""
+"""A node that lies elsewhere begins anew there (decision 0022), until more is known."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Links between two nodes that stay, whose power has changed for good (estimation.md, point 9).
+"""Links between two nodes that stay, whose power has changed for good.
 
 Paper A takes that for a sign of fire.
 """

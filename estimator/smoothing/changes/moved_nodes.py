@@ -1,4 +1,4 @@
-"""Nodes that lie somewhere else than they did (estimation.md, point 9).
+"""Nodes that lie somewhere else than they did (decision 0022).
 
 A breadcrumb may be kicked or carried: from some epoch on its readings disagree with its place, and agree with
 another one.

@@ -130,7 +130,7 @@ def inverses(matrices: Array) -> Array:
 
 @njit(cache=True)
 def unit_motion(between: Array, durations_s: Array, states: Array) -> Motion:
-    """A unit's motion (estimation.md, point 1), with what its heading's random walk does on the way.
+    """A unit's motion, with what its heading's random walk does on the way.
 
     p' = p + s Rz(ψ) (Δ + β J M), ψ' = ψ + β Δt: M is the displacements' first moment in time, exact to second
     order in β Δt however the way turns in between. A heading that walks randomly by variance v along a chord

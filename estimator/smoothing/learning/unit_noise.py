@@ -144,8 +144,7 @@ def noise_scores(motion: Motion, unsure_of: Array) -> Array:
 def calibrate(state: FusionState, problem: Problem, x: Array, border: Array) -> None:
     """Judge anew which technologies are calibrated, as long as their prior is the window's own.
 
-    Only odometry tells a scale (estimation.md, point 3): a velocity that may be anything shrinks or grows
-    with it.
+    Only odometry tells a scale (decision 0021): a velocity that may be anything shrinks or grows with it.
     """
     size = problem.layout.length * problem.layout.width
     known = set() if problem.prior is None else set(problem.prior.keys)

@@ -112,7 +112,7 @@ class Problem:
         return total
 
     def linearise(self, x: Array) -> Linearised:
-        """The rows at an estimate, with first-estimate Jacobians (estimation.md, point 6).
+        """The rows at an estimate, with first-estimate Jacobians (decision 0006).
 
         Where the prior was linearised, turned as the map has been since: where new derivatives by the same
         numbers were taken elsewhere, their sum would know what nobody has measured, as where north is.

@@ -1,4 +1,4 @@
-"""Paper A's experiment has the figures that estimation.md gives for it."""
+"""Paper A's experiment as it is simulated: the walk, the drops, what radios hear, and where dead reckoning alone ends."""
 
 import numpy as np
 import pytest

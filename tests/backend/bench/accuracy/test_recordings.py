@@ -56,7 +56,7 @@ def test_plaza1_smoothed_stays_within_90_cm_and_places_all_its_beacons(shared_da
 def test_plaza2_whose_gyro_is_biased_by_half_a_degree_a_second_is_tracked_within_a_metre(
     tmp_path: Path,
 ) -> None:
-    """Best known (estimation.md, point 2): 1.6 m online with bias, ZARU and range scale, 6.7 m without."""
+    """The best we know of others: 1.6 m online with bias, ZARU and range scale, 6.7 m without."""
     case = plaza2(tmp_path)
     online, smoothed = (errors_of(case, "kirchhoff", mode) for mode in ("online", "smoothed"))
     assert online.rmse_m <= 1.0
