@@ -18,41 +18,41 @@ from estimator.inertial.short_gaps import CROSSED_S
 from estimator.inertial.strapdown import ATTITUDE_WALK
 from estimator.inertial.zupt import GYRO_SCALE_SIGMA
 from estimator.measurements.imu import Imu
+from tests.estimator.inertial.boot_navigation import navigated, total_m, total_sigma_m, true_m
 from tests.estimator.inertial.gait import AROUND, STEP_S, Stride, rolled, walked
-from tests.estimator.inertial.led import followed, true_m, unsure_m, where
 
 GAIT = walked(AROUND, start_t=50.0).noisy(np.random.default_rng(1))
 
 
 def test_displacements_follow_each_other_and_lead_along_the_way() -> None:
-    found, texts = followed(GAIT.readings())
+    found, texts = navigated(GAIT.readings())
     assert texts == []
     assert all(after.from_t == before.t for before, after in pairwise(found))
     assert all(d.from_t is not None and d.t - d.from_t == pytest.approx(EACH_S) for d in found)
     assert found[0].from_t == pytest.approx(50.0)
     for upto in range(10, len(found), 7):
-        assert np.linalg.norm(where(found[:upto]) - true_m(GAIT, found[upto - 1].t)) < 0.3
-    assert np.linalg.norm(where(found) - GAIT.place_m[-1]) < 0.3
+        assert np.linalg.norm(total_m(found[:upto]) - true_m(GAIT, found[upto - 1].t)) < 0.3
+    assert np.linalg.norm(total_m(found) - GAIT.place_m[-1]) < 0.3
 
 
 @pytest.mark.parametrize("first", [0, 400])
 def test_the_time_in_which_a_boot_is_levelled_is_told_as_well(first: int) -> None:
     """It stands there, or swings."""
     gait = walked([Stride()] * 5, rests_s=2.0)
-    (told, *_), _ = followed([gait.imu(first)])
+    (told, *_), _ = navigated([gait.imu(first)])
     assert told.from_t == pytest.approx(first * STEP_S)
     assert told.t == pytest.approx(first * STEP_S + ALIGN_S)
     moved = true_m(gait, told.t) - true_m(gait, told.from_t or 0.0)
     assert told.sigma_m is not None
-    assert np.linalg.norm(where([told]) - moved) < 2.5 * told.sigma_m
+    assert np.linalg.norm(total_m([told]) - moved) < 2.5 * told.sigma_m
     assert told.sigma_m < 0.02 or first > 0
 
 
 def test_whoever_goes_down_a_stairwell_is_ever_less_sure_where_he_faces() -> None:
     """Turns the same way are off by what a gyro's scale is; a corner and back by no more than the corner."""
     quarter = 0.5 * np.pi
-    well, _ = followed(walked([Stride(1.0, quarter)] * 40).readings())
-    corners, _ = followed(walked([Stride(1.0, quarter), Stride(1.0, -quarter)] * 20).readings())
+    well, _ = navigated(walked([Stride(1.0, quarter)] * 40).readings())
+    corners, _ = navigated(walked([Stride(1.0, quarter), Stride(1.0, -quarter)] * 20).readings())
     assert sum(d.turned_rad2 for d in well) > (GYRO_SCALE_SIGMA * 40.0 * quarter) ** 2
     assert sum(d.turned_rad2 for d in corners) < 2.0 * ATTITUDE_WALK**2 * corners[-1].t + 1e-4
 
@@ -62,8 +62,8 @@ def test_a_displacement_says_what_its_way_is_unsure_by() -> None:
     off, told = [], []
     for seed in range(20):
         gait = walked(AROUND).noisy(np.random.default_rng(seed), bias_radps=0.0)
-        found, _ = followed(gait.readings())
-        off.append(where(found) - true_m(gait, found[-1].t))
+        found, _ = navigated(gait.readings())
+        off.append(total_m(found) - true_m(gait, found[-1].t))
         told.append(sum((d.sigma_m or 0.0) ** 2 for d in found))
     nees = np.sum(np.square(off), axis=1) / (3.0 * np.array(told))
     assert 0.02 < np.mean(nees) < 1.0
@@ -73,8 +73,8 @@ def test_a_displacement_says_what_its_way_is_unsure_by() -> None:
 @given(st.lists(st.integers(1, 900), min_size=1, max_size=20))
 def test_displacements_are_the_same_however_samples_are_cut_into_readings(lengths: list[int]) -> None:
     cuts = np.unique(np.clip(np.cumsum([0, *lengths, len(GAIT.t)]), 0, len(GAIT.t))).tolist()
-    found, _ = followed([GAIT.imu(first, last) for first, last in pairwise(cuts)])
-    expected, _ = followed(GAIT.readings(1000))
+    found, _ = navigated([GAIT.imu(first, last) for first, last in pairwise(cuts)])
+    expected, _ = navigated(GAIT.readings(1000))
     assert len(found) == len(expected)
     for one, other in zip(found, expected, strict=True):
         assert one.t == pytest.approx(other.t, abs=1e-6)
@@ -82,18 +82,18 @@ def test_displacements_are_the_same_however_samples_are_cut_into_readings(length
 
 
 def test_its_heading_is_told_in_the_frame_that_it_began_in() -> None:
-    found, _ = followed(GAIT.readings(), heading_rad=0.4)
+    found, _ = navigated(GAIT.readings(), heading_rad=0.4)
     assert found[0].heading_rad == pytest.approx(0.4, abs=0.01)
     assert found[-1].heading_rad == pytest.approx(0.4 + GAIT.heading_rad, abs=0.1)
 
 
 def test_samples_that_come_twice_count_once() -> None:
     readings = GAIT.readings(100)
-    found, texts = followed([r for reading in readings for r in (reading, reading)])
+    found, texts = navigated([r for reading in readings for r in (reading, reading)])
     assert set(texts) == {"samples of this time were reported before"}
-    assert found == followed(readings)[0]
+    assert found == navigated(readings)[0]
     overlapping = [GAIT.imu(first, first + 300) for first in range(0, len(GAIT.t), 200)]
-    np.testing.assert_allclose(where(followed(overlapping)[0]), where(found), atol=0.1)
+    np.testing.assert_allclose(total_m(navigated(overlapping)[0]), total_m(found), atol=0.1)
 
 
 @pytest.mark.parametrize("each", [10, 20, 200])
@@ -101,17 +101,17 @@ def test_samples_that_come_twice_count_once() -> None:
 def test_epochs_of_a_gateway_that_jitter_cost_no_samples(each: int, jitter_s: float) -> None:
     chance = np.random.default_rng(1)
     late = [structs.replace(r, t=r.t + abs(float(chance.normal(0.0, jitter_s)))) for r in GAIT.readings(each)]
-    found, texts = followed(late)
+    found, texts = navigated(late)
     assert texts == []
-    assert np.linalg.norm(where(found) - GAIT.place_m[-1]) < 0.4
+    assert np.linalg.norm(total_m(found) - GAIT.place_m[-1]) < 0.4
     assert found[-1].t == pytest.approx(GAIT.t[-1], abs=EACH_S + JITTER_MOST_S)
 
 
 def test_a_clock_that_runs_fast_is_followed() -> None:
     """Who says 200 a second and sends 201 is half a hundredth ahead after each reading."""
     fast = [structs.replace(r, t=50.0 + (r.t - 50.0) * 200.0 / 201.0) for r in GAIT.readings()]
-    found, _ = followed(fast)
-    assert np.linalg.norm(where(found) - GAIT.place_m[-1]) < 0.02 * 22.0
+    found, _ = navigated(fast)
+    assert np.linalg.norm(total_m(found) - GAIT.place_m[-1]) < 0.02 * 22.0
     assert found[-1].t == pytest.approx(fast[-1].until_t, abs=EACH_S + JITTER_MOST_S)
 
 
@@ -119,9 +119,9 @@ def test_a_clock_that_runs_fast_is_followed() -> None:
 @pytest.mark.parametrize("at", [900, 930, 960])
 def test_a_few_lost_samples_are_told_by_what_they_may_have_been(lost: int, at: int) -> None:
     gait = walked([Stride()] * 10)
-    found, _ = followed([gait.imu(0, at), gait.imu(at + lost, None)])
-    off_m = np.linalg.norm(where(found) - true_m(gait, found[-1].t))
-    assert off_m < 3.0 * unsure_m(found)
+    found, _ = navigated([gait.imu(0, at), gait.imu(at + lost, None)])
+    off_m = np.linalg.norm(total_m(found) - true_m(gait, found[-1].t))
+    assert off_m < 3.0 * total_sigma_m(found)
     assert off_m < 0.5
 
 
@@ -139,7 +139,7 @@ def test_after_missing_samples_the_boot_is_sought_again_and_may_have_turned(lost
     ends_t = (1600 + lost) * STEP_S
     if lost * STEP_S > CROSSED_S:
         assert all((d.from_t or 0.0) >= ends_t - 1e-6 for d in done.displacements)
-    moved = where(done.displacements) if done.displacements else np.zeros(3)
+    moved = total_m(done.displacements) if done.displacements else np.zeros(3)
     begins_t = min((d.from_t or 0.0 for d in done.displacements), default=ends_t)
     assert (
         np.linalg.norm(moved - true_m(gait, max(done.navigation.told_t, ends_t)) + true_m(gait, begins_t))
@@ -151,12 +151,12 @@ def test_after_missing_samples_the_boot_is_sought_again_and_may_have_turned(lost
 
 def test_nothing_is_made_up_for_missing_samples() -> None:
     gait = walked([Stride()] * 20)
-    found, _ = followed([gait.imu(0, 1600), gait.imu(2400, None)])
+    found, _ = navigated([gait.imu(0, 1600), gait.imu(2400, None)])
     gap = next(i for i, (a, b) in enumerate(pairwise(found)) if b.from_t != a.t)
     assert found[gap].t <= 1600 * STEP_S + 1e-6
     assert found[gap + 1].from_t == pytest.approx(2400 * STEP_S)
     missed = true_m(gait, found[gap + 1].from_t or 0.0) - true_m(gait, found[gap].t)
-    assert np.linalg.norm(where(found) + missed - gait.place_m[-1]) < 0.5
+    assert np.linalg.norm(total_m(found) + missed - gait.place_m[-1]) < 0.5
 
 
 @pytest.mark.parametrize(("each", "lost"), [(10, 0.1), (10, 0.2), (20, 0.1)])
@@ -165,9 +165,9 @@ def test_what_a_bad_link_leaves_of_a_walk_says_how_unsure_it_is(each: int, lost:
     chance, nees = np.random.default_rng(0), []
     for seed in range(6):
         gait = walked([Stride()] * 20).noisy(np.random.default_rng(seed))
-        found, _ = followed([r for r in gait.readings(each) if r.t < 2.0 or chance.random() > lost])
+        found, _ = navigated([r for r in gait.readings(each) if r.t < 2.0 or chance.random() > lost])
         told = sum(true_m(gait, d.t) - true_m(gait, d.from_t or 0.0) for d in found)
-        nees.append(float(np.sum((where(found) - told) ** 2)) / (3.0 * unsure_m(found) ** 2))
+        nees.append(float(np.sum((total_m(found) - told) ** 2)) / (3.0 * total_sigma_m(found) ** 2))
     assert 0.1 < np.mean(nees) < 1.6
 
 
@@ -178,7 +178,7 @@ def test_where_every_second_reading_is_lost_the_others_are_told_whole(each: int,
     gait = walked(AROUND * 2).noisy(np.random.default_rng(seed))
     readings = gait.readings(each)
     heard = [r for i, r in enumerate(readings) if r.t < 2.0 or i % 2 == 0]
-    found, _ = followed(heard)
+    found, _ = navigated(heard)
     told_s = sum(d.t - (d.from_t or 0.0) for d in found)
     assert told_s > (0.55 if each == 100 else 0.8) * sum(r.until_t - r.t for r in heard)
     lengths = [
@@ -193,7 +193,7 @@ def test_where_every_second_reading_is_lost_the_others_are_told_whole(each: int,
 @pytest.mark.parametrize("lost", [1580, 1640, 1700, 1750])
 def test_a_unit_whose_x_axis_points_up_goes_on_where_it_went(angle_rad: float, lost: int) -> None:
     gait = walked([Stride()] * 20, mounted=Rotation.from_rotvec([0.0, angle_rad, 0.0]))
-    found, _ = followed([gait.imu(0, lost), gait.imu(lost + 100, None)])
+    found, _ = navigated([gait.imu(0, lost), gait.imu(lost + 100, None)])
     before = np.array([d.delta_m for d in found if d.t < lost * STEP_S]).sum(axis=0)
     after = np.array([d.delta_m for d in found if (d.from_t or 0.0) > lost * STEP_S + 1.0]).sum(axis=0)
     assert np.dot(before, after) > 0.95 * np.linalg.norm(before) * np.linalg.norm(after)
@@ -201,7 +201,7 @@ def test_a_unit_whose_x_axis_points_up_goes_on_where_it_went(angle_rad: float, l
 
 @pytest.mark.parametrize("scale", [0.0, 1.0 / 9.80665])
 def test_a_unit_that_feels_no_gravity_tells_nothing_and_says_so(scale: float) -> None:
-    found, texts = followed(GAIT._replace(force=scale * GAIT.force).readings())
+    found, texts = navigated(GAIT._replace(force=scale * GAIT.force).readings())
     assert found == []
     assert "no gravity" in texts[0]
 
@@ -209,16 +209,16 @@ def test_a_unit_that_feels_no_gravity_tells_nothing_and_says_so(scale: float) ->
 @pytest.mark.parametrize("each", [10, 77, 400])
 def test_who_runs_is_followed_however_his_samples_are_cut(each: int) -> None:
     gait = walked([Stride(length_m=2.6)] * 20)
-    found, texts = followed(gait.readings(each))
+    found, texts = navigated(gait.readings(each))
     assert texts == []
-    assert np.linalg.norm(where(found)[:2] - gait.place_m[-1][:2]) < 0.05 * 52.0
+    assert np.linalg.norm(total_m(found)[:2] - gait.place_m[-1][:2]) < 0.05 * 52.0
 
 
 @pytest.mark.parametrize("above_m", [0.07, 0.1, 0.13])
 def test_strides_of_a_boot_that_rolls_from_heel_to_ball_are_not_taken_for_shorter(above_m: float) -> None:
     gait = rolled(20, above_m)
-    found, _ = followed(gait.readings())
-    assert where(found)[0] == pytest.approx(gait.place_m[-1][0], rel=0.006)
+    found, _ = navigated(gait.readings())
+    assert total_m(found)[0] == pytest.approx(gait.place_m[-1][0], rel=0.006)
 
 
 def test_long_readings_are_folded_in_pieces_of_half_a_second() -> None:
@@ -232,7 +232,7 @@ def test_long_readings_are_folded_in_pieces_of_half_a_second() -> None:
 
 def test_too_few_samples_a_second_are_refused() -> None:
     slow = Imu(t=1.0, node="ff1", rate_hz=10.0, accel_mps2=[(0.0, 0.0, 9.8)], gyro_radps=[(0.0, 0.0, 0.0)])
-    found, texts = followed([slow])
+    found, texts = navigated([slow])
     assert found == []
     assert "10 samples a second" in texts[0]
     assert slow.until_t == 1.0
@@ -247,7 +247,7 @@ def test_samples_that_lead_nowhere_are_told_and_navigation_goes_on_afterwards() 
         gyro_radps=[(900.0, 0.0, 0.0)] * 200,
     )
     rests = walked([], start_t=54.0)
-    found, texts = followed([GAIT.imu(0, 600), falls, *rests.readings()])
+    found, texts = navigated([GAIT.imu(0, 600), falls, *rests.readings()])
     assert any("levelled anew" in text for text in texts)
     assert np.isfinite([d.delta_m for d in found]).all()
     assert np.linalg.norm(found[-1].delta_m) < 0.01
@@ -273,6 +273,6 @@ def test_whatever_samples_say_displacements_are_numbers(seed: int, force: float,
     broken = broken._replace(force=broken.force + force * noise[0], rate=broken.rate + rate * noise[1])
     walks = [walked([Stride()] * 2, start_t=t) for t in (0.0, 12.0)]
     middle = broken._replace(t=walks[0].t[-1] + STEP_S + broken.t)
-    found, _ = followed([*walks[0].readings(), *middle.readings(), *walks[1].readings()])
+    found, _ = navigated([*walks[0].readings(), *middle.readings(), *walks[1].readings()])
     assert np.isfinite([[*d.delta_m, d.sigma_m or 0.0, d.up_m2, d.heading_rad or 0.0] for d in found]).all()
     assert np.linalg.norm(found[-1].delta_m) < 0.05

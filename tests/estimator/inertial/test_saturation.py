@@ -6,8 +6,8 @@ import pytest
 from estimator.graph.dense import Array
 from estimator.inertial.boot import CLIPPED
 from estimator.inertial.saturation import hidden_peak, remark
+from tests.estimator.inertial.boot_navigation import BLOCK, entered, track_boot
 from tests.estimator.inertial.gait import STEP_S, Gait, walked
-from tests.estimator.inertial.led import BLOCK, entered, told_of
 
 START_T, END_MPS2 = 1000.0, 20.0
 
@@ -78,6 +78,6 @@ def walk(seed: int, blow_mps: float) -> tuple[Gait, Gait]:
 @pytest.mark.parametrize("seed", [0, 1])
 def test_he_is_where_he_is_said_to_be(seed: int, blow_mps: float) -> None:
     truth, gait = walk(seed, blow_mps)
-    notices, _ = told_of(truth, gait, entered(START_T))
+    notices, _ = track_boot(truth, gait, entered(START_T))
     assert [notice.code for notice in notices] == ["conflict"]
     assert "set a wider range" in notices[0].text

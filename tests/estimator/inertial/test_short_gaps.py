@@ -7,8 +7,8 @@ import pytest
 
 from estimator.inertial.boot import Boot
 from estimator.inertial.short_gaps import CROSSED_S, cross, edge_of
+from tests.estimator.inertial.boot_navigation import navigated, total_m, total_sigma_m, true_m
 from tests.estimator.inertial.gait import STEP_S, Stride, walked
-from tests.estimator.inertial.led import followed, true_m, unsure_m, where
 
 
 def test_a_velocity_of_third_degree_is_crossed_exactly() -> None:
@@ -45,8 +45,8 @@ def test_who_turns_at_a_steady_rate_has_turned_by_it_on_the_other_side() -> None
 def test_a_gap_anywhere_in_a_stride_is_crossed_as_well_as_it_says(lost: int, at: int) -> None:
     assert lost * STEP_S <= CROSSED_S
     gait = walked([Stride()] * 10)
-    found, _ = followed([gait.imu(0, at), gait.imu(at + lost, None)])
+    found, _ = navigated([gait.imu(0, at), gait.imu(at + lost, None)])
     assert all(a.t == pytest.approx(b.from_t) for a, b in pairwise(found))
-    off_m = np.linalg.norm(where(found) - true_m(gait, found[-1].t))
-    assert off_m < 3.0 * unsure_m(found)
+    off_m = np.linalg.norm(total_m(found) - true_m(gait, found[-1].t))
+    assert off_m < 3.0 * total_sigma_m(found)
     assert off_m < 0.15

@@ -1,4 +1,4 @@
-"""Paper A's experiment as it is simulated: the walk, the drops, what radios hear, and where dead reckoning alone ends."""
+"""Paper A's experiment as simulated: its walk, its drops, its radios, and how far off dead reckoning ends."""
 
 import numpy as np
 import pytest

@@ -13,8 +13,8 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, outside
+from tests.estimator.inertial.boot_navigation import true_m
 from tests.estimator.inertial.gait import Stride, walked
-from tests.estimator.inertial.led import true_m
 
 BEGINS = Node(
     t=0.0,

@@ -17,8 +17,8 @@ from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, outside
+from tests.estimator.inertial.boot_motion import BootMotion
 from tests.estimator.inertial.gait import AROUND, STEP_S, Gait, Stride, walked
-from tests.estimator.inertial.moves import Moves
 
 START_T = 1000.0
 GAIT = walked(AROUND, START_T, heading_rad=0.7).noisy(np.random.default_rng(3))
@@ -264,7 +264,7 @@ def test_who_walks_when_his_unit_is_switched_on_is_where_his_ellipse_says(
     bias_radps: float, radios: bool
 ) -> None:
     """Nothing has told the biases of its gyros until he rests; then they are others than ranges had told."""
-    gait = later(Moves().walks(20).rests(3.0).walks(20).gait())
+    gait = later(BootMotion().walks(20).rests(3.0).walks(20).gait())
     gait = gait._replace(rate=gait.rate + bias_radps)
     far_m = (60.0, 10.0, 1.0)
     far = structs.replace(ANCHOR, node="a2", position_m=far_m)
@@ -285,7 +285,7 @@ def test_who_walks_when_his_unit_is_switched_on_is_where_his_ellipse_says(
 
 
 def test_who_crawls_is_shown_where_he_is_all_the_time() -> None:
-    gait = later(Moves().rests(2.0).walks(4).kneels().crawls(30, 0.4, 0.7, 0.5, 0.02).rests(1.0).gait())
+    gait = later(BootMotion().rests(2.0).walks(4).kneels().crawls(30, 0.4, 0.7, 0.5, 0.02).rests(1.0).gait())
     tracker = KirchhoffTracker()
     tracker.fold([FACES_EAST])
     for reading in gait.noisy(np.random.default_rng(4)).readings():

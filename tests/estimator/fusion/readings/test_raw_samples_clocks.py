@@ -5,8 +5,8 @@ import pytest
 
 from estimator.measurements import AnyReading
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.inertial.boot_navigation import BLOCK, entered, track_boot
 from tests.estimator.inertial.gait import walked
-from tests.estimator.inertial.led import BLOCK, entered, told_of
 
 START_T = 1000.0
 FACES_RAD = 0.7
@@ -16,7 +16,7 @@ FACES_RAD = 0.7
 def test_he_is_followed_by_the_true_rate_of_his_samples(pace: float) -> None:
     truth = walked(BLOCK * 3, START_T, heading_rad=FACES_RAD, rests_s=4.0)
     gait = truth.sampled(pace).noisy(np.random.default_rng(0), 0.003)
-    notices, farthest_m = told_of(truth, gait, entered(START_T, FACES_RAD))
+    notices, farthest_m = track_boot(truth, gait, entered(START_T, FACES_RAD))
     assert farthest_m < 0.6
     assert [notice.code for notice in notices] == ["conflict"]
     assert float(notices[0].text.split()[4]) == pytest.approx(200.0 / pace, abs=0.4)

@@ -9,8 +9,8 @@ from estimator.estimate import NodeEstimate
 from estimator.measurements.node import Node
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, outside
+from tests.estimator.inertial.boot_motion import BootMotion, Unit
 from tests.estimator.inertial.gait import STEP_S, Gait, Stride, walked
-from tests.estimator.inertial.moves import Moves, Unit
 
 SEEDS = 20
 SIGMA_M, SIGMA_RAD = 0.05, 0.03
@@ -38,7 +38,7 @@ def ladder(chance: np.random.Generator) -> Gait:
 
 def moves_off(chance: np.random.Generator) -> Gait:
     """Switched on just before the boot is moved."""
-    begins = Moves().rests(chance.uniform(0.3, 0.6)).turns(chance.uniform(-0.1, 0.1), 0.5)
+    begins = BootMotion().rests(chance.uniform(0.3, 0.6)).turns(chance.uniform(-0.1, 0.1), 0.5)
     return begins.walks(20).gait()
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.estimator.smoothing.chains import SHAPES, Shape, alone, random_chain
+from tests.estimator.smoothing.random_chains import SHAPES, Shape, alone, random_chain
 from tests.estimator.smoothing.windows import dense
 
 

@@ -31,8 +31,8 @@ def pulled(problem: Problem, x: Array) -> Array:
     return problem.assemble(x, linear, problem.weigh(linear.residual), problem.motions(x)).slope()
 
 
-def led(problem: Problem, moving: int) -> tuple[Array, Array, Problem, Unknowns]:
-    """Where one walk rests by itself that begins 0.3 m off, and where it began; its part."""
+def solved_alone(problem: Problem, moving: int) -> tuple[Array, Array, Problem, Unknowns]:
+    """An estimate with one walk 0.3 m off, that walk solved alone from there, and its part of the problem."""
     layout, x = problem.layout, problem.layout.start()
     layout.states(x, moving)[1:, :2] += 0.3
     part = Parts(problem, x).of({moving}, layout.length - 1)
@@ -45,7 +45,7 @@ def led(problem: Problem, moving: int) -> tuple[Array, Array, Problem, Unknowns]
 @pytest.mark.parametrize("moving", [0, 1])
 def test_who_is_held_stays_and_nothing_pulls_the_others_any_more(problem: Problem, moving: int) -> None:
     layout = problem.layout
-    x, there, part, numbers = led(problem, moving)
+    x, there, part, numbers = solved_alone(problem, moving)
     assert np.array_equal(layout.states(there, 1 - moving), layout.states(x, 1 - moving))
     assert np.abs(layout.states(there, moving) - layout.states(x, moving)).max() > 0.1
     strongest = np.abs(layout.states(pulled(problem, there), 1 - moving)).max()
@@ -56,7 +56,7 @@ def test_who_is_held_stays_and_nothing_pulls_the_others_any_more(problem: Proble
 def test_who_rests_by_himself_rests_among_all(moving: int) -> None:
     """What they hear of each other, and the border, pull him as they do among all."""
     problem = problem_of(fused(two_responders(seconds=40)))
-    _, there, _, _ = led(problem, moving)
+    _, there, _, _ = solved_alone(problem, moving)
     own, other = (
         np.abs(problem.layout.states(pulled(problem, there), i)).max() for i in (moving, 1 - moving)
     )

@@ -8,7 +8,7 @@ from estimator.measurements import AnyReading
 from estimator.smoothing.images.unit_mounting import HINTED, MOST, SOME, YOUNG_S, asked_of
 from estimator.smoothing.problem.newton import Problem
 from tests.estimator.smoothing.images.test_flip_ambiguity import solved_of
-from tests.estimator.trackers.test_worn import entry
+from tests.estimator.trackers.test_unit_mounting import entry
 
 NOWHERE = (0.0,)
 

@@ -19,8 +19,13 @@ from estimator.smoothing.keyframes.walks import unit_motion
 from estimator.smoothing.problem.gauge_turn import turn_between, turned
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.lag import Lag
+from tests.estimator.smoothing.map_rotation import (
+    HEADING_SIGMA_RAD,
+    turned_map,
+    walk_from_afar,
+    walk_past_beacons,
+)
 from tests.estimator.smoothing.readings.test_jacobians import steps_of, unit_states
-from tests.estimator.smoothing.turning import HEADING_SIGMA_RAD, turned_map, walk_from_afar, walk_past_beacons
 from tests.estimator.smoothing.windows import fused, problem_of, random_state
 
 seeds = st.integers(0, 10_000)

@@ -15,8 +15,8 @@ from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.gauge_turn import STEADY_M
 from estimator.smoothing.problem.marginal_prior import MarginalPrior
 from estimator.smoothing.problem.newton import Problem
+from tests.estimator.smoothing.map_rotation import HEADING_SIGMA_RAD, turned_map, walk_past_beacons
 from tests.estimator.smoothing.problem.test_marginals import prior_at, window_from
-from tests.estimator.smoothing.turning import HEADING_SIGMA_RAD, turned_map, walk_past_beacons
 from tests.estimator.smoothing.windows import difference, fused, problem_of
 
 BASE_M = (37.0, -22.0)

@@ -18,7 +18,7 @@ from estimator.smoothing.chain.groups import Groups
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
-from tests.estimator.smoothing.chains import SHAPES, Shape, alone, groups_of, random_chain
+from tests.estimator.smoothing.random_chains import SHAPES, Shape, alone, groups_of, random_chain
 from tests.estimator.smoothing.windows import at_rest, dense, fused, problem_of
 from tests.estimator.walks import two_responders
 

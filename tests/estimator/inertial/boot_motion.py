@@ -14,7 +14,7 @@ KNEELS_RAD, KNEELS_S = 1.2, 1.0
 TREMBLES_S = 0.08
 
 
-class Moves:
+class BootMotion:
     """What a boot does, one thing after the other: each adds to its way and gives itself.
 
     A pose is a place (m), heading, pitch and roll (rad).

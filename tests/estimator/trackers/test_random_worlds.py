@@ -12,7 +12,7 @@ from estimator.measurements import AnyReading
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.worlds import SECONDS, World, world
+from tests.estimator.random_worlds import SECONDS, World, world
 
 BEGUN_S = 5
 WRONG_M, WRONG_SIGMAS = 1.5, 4.0

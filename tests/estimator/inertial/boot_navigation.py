@@ -1,4 +1,4 @@
-"""Where readings of samples lead a boot, and where they lead by what it says."""
+"""Raw samples navigated to displacements, alone and by the whole tracker, held against the truth."""
 
 from collections.abc import Sequence
 
@@ -32,8 +32,8 @@ def entered(t: float, heading_rad: float = 0.0) -> Node:
     )
 
 
-def followed(readings: list[Imu], heading_rad: float = 0.0) -> tuple[list[InertialDisplacement], list[str]]:
-    """The displacements that readings lead to, and what is said of them."""
+def navigated(readings: list[Imu], heading_rad: float = 0.0) -> tuple[list[InertialDisplacement], list[str]]:
+    """The displacements that `navigate` makes of readings, and its remarks on them."""
     known: Navigation | None = None
     found, texts = [], []
     for reading in readings:
@@ -45,8 +45,8 @@ def followed(readings: list[Imu], heading_rad: float = 0.0) -> tuple[list[Inerti
     return found, texts
 
 
-def where(displacements: Sequence[Displacement]) -> np.ndarray:
-    """Their sum, 3 (m)."""
+def total_m(displacements: Sequence[Displacement]) -> np.ndarray:
+    """The sum of displacements, 3 (m)."""
     return np.asarray(np.sum(np.array([d.delta_m for d in displacements]), axis=0))
 
 
@@ -55,11 +55,11 @@ def true_m(gait: Gait, t: float) -> np.ndarray:
     return np.array([np.interp(t, gait.t + STEP_S, gait.place_m[:, axis]) for axis in range(3)])
 
 
-def told_of(truth: Gait, felt: Gait, begins: Node) -> tuple[list[Notice], float]:
-    """Follow a boot by what its unit has felt: he is inside the ellipse shown after each reading.
+def track_boot(truth: Gait, felt: Gait, begins: Node) -> tuple[list[Notice], float]:
+    """Fold a boot's samples into the tracker, and assert that the truth is inside each ellipse shown.
 
     Returns:
-        What is said meanwhile, and how far off he was shown at most (m).
+        The notices given, and the largest error of a position shown (m).
     """
     tracker, notices, farthest_m = KirchhoffTracker(), list[Notice](), 0.0
     tracker.fold([begins])
@@ -73,6 +73,6 @@ def told_of(truth: Gait, felt: Gait, begins: Node) -> tuple[list[Notice], float]
     return notices, farthest_m
 
 
-def unsure_m(found: Sequence[Displacement]) -> float:
-    """The standard deviation that the sum of displacements has by what they say (m)."""
+def total_sigma_m(found: Sequence[Displacement]) -> float:
+    """Standard deviation of the sum of displacements by their own sigmas, per axis (m)."""
     return float(np.sqrt(sum((d.sigma_m or 0.0) ** 2 for d in found)))
