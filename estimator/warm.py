@@ -30,12 +30,12 @@ from estimator.graph.right_sides import carry, carry_back
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
 from estimator.graph.triangular import inverted
 from estimator.graph.variable import Variable
-from estimator.inertial.after_gaps import face_on, find_standstill
+from estimator.inertial.after_gaps import find_standstill, keep_heading
 from estimator.inertial.after_gaps import level_backwards as place_boot
 from estimator.inertial.boot import Boot
 from estimator.inertial.free_navigation import add_doubt
-from estimator.inertial.sample_rate import Clock, hears
-from estimator.inertial.stuck_sensor import drop_stuck_samples, unwatched
+from estimator.inertial.sample_rate import Clock, add_epoch
+from estimator.inertial.stuck_sensor import drop_stuck_samples, initial_watch
 from estimator.inertial.zupt_aided import advance
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
@@ -80,11 +80,11 @@ def warm_up() -> None:
     taken = advance(boot, rests, np.zeros((60, 3)), 0.01)
     advance(boot, rests[taken:], np.zeros((60, 3))[taken:], 0.01)
     add_doubt(boot, 0.5)
-    face_on(boot)
-    again, felt = boot.anew(), np.hstack([rests, np.zeros((60, 3))])
+    keep_heading(boot)
+    again, felt = boot.to_level_again(), np.hstack([rests, np.zeros((60, 3))])
     place_boot(again, felt, find_standstill(again, felt, 0.01), 0.01)
-    hears(Clock.new(100.0)._replace(counted=1), 1.0, 100.0, overlaps=False)
-    drop_stuck_samples(unwatched(), np.zeros((0, 6)), np.zeros((2, 6)), 0, 0.01)
+    add_epoch(Clock.new(100.0)._replace(counted=1), 1.0, 100.0, overlaps=False)
+    drop_stuck_samples(initial_watch(), np.zeros((0, 6)), np.zeros((2, 6)), 0, 0.01)
     predict_bearing(place, place, one)
     wrap(one)
     for noise in (strided, strided.copy()):

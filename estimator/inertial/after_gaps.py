@@ -21,11 +21,11 @@ from estimator.inertial.boot import (
     Boot,
 )
 from estimator.inertial.free_navigation import start_free
-from estimator.inertial.levelling import doubt_free, veered_rad2
+from estimator.inertial.levelling import azimuth_variance_rad2, initial_free_covariance
 from estimator.inertial.rotations import azimuth_rad, level, turn_by, turned_about
 from estimator.inertial.strapdown import without_biases
 from estimator.inertial.zero_velocity import LAST, add_sample, rolling_mps, stance_sigma
-from estimator.inertial.zupt import face
+from estimator.inertial.zupt import note_heading
 
 SOUGHT_S = 1.0
 """Whoever walks sets down each boot once in so long."""
@@ -43,20 +43,20 @@ STEEP = 0.9
 
 @njit(cache=True, error_model="numpy")
 def find_standstill(boot: Boot, samples: Array, step_s: float) -> int:
-    """How many samples there are up to where a boot has stood for a while; 0: it has not.
+    """Number of samples up to the end of the first standstill of `STANDS_S`; 0: there is none.
 
     Args:
         boot: what is known of its sensors.
         samples: specific force and angular rate, m × 6 (m/s², rad/s).
         step_s: time from one sample to the next (s).
     """
-    felt, sample, stood_s = np.zeros(13), np.empty(6), 0.0
+    stance, sample, stood_s = np.zeros(13), np.empty(6), 0.0
     for i in range(len(samples)):
         without_biases(boot.held, samples[i, :3], samples[i, 3:], sample)
         if i == 0:
-            _feel(felt, sample)
-        add_sample(felt, sample[:3], sample[3:], boot.known[GRAVITY], step_s)
-        stood_s = stood_s + step_s if stance_sigma(felt, np.inf) < STANDS_MPS else 0.0
+            _begin_stance(stance, sample)
+        add_sample(stance, sample[:3], sample[3:], boot.known[GRAVITY], step_s)
+        stood_s = stood_s + step_s if stance_sigma(stance, np.inf) < STANDS_MPS else 0.0
         if stood_s > STANDS_S - 0.5 * step_s:
             return i + 1
     return 0
@@ -69,8 +69,8 @@ def level_backwards(boot: Boot, samples: Array, upto: int, step_s: float) -> boo
     It is taken to face there what it faced before the gap.
 
     Args:
-        boot: one that is to be levelled again (`Boot.anew`), changed in place: its navigation is what it was
-            when the first sample began.
+        boot: from `Boot.to_level_again`, changed in place: its navigation is then that at the beginning of
+            the first sample.
         samples: specific force and angular rate, m × 6 (m/s², rad/s).
         upto: of so many the last ones are a standstill, see `find_standstill`.
         step_s: time from one sample to the next (s).
@@ -109,32 +109,32 @@ def level_backwards(boot: Boot, samples: Array, upto: int, step_s: float) -> boo
     held.velocity[1] = sine * velocity[0] + cosine * velocity[1]
     held.velocity[2] = velocity[2]
     without_biases(held, samples[0, :3], samples[0, 3:], sample)
-    _feel(boot.felt, sample)
+    _begin_stance(boot.stance, sample)
     held.covariance[:] = 0.0
     for c in range(3):
         held.covariance[VELOCITY + c, VELOCITY + c] = START_SIGMA_MPS**2
     for c in range(2):
         held.covariance[ATTITUDE + c, ATTITUDE + c] = TILT_SIGMA_RAD**2
-    known[TURNED_RAD2] += veered_rad2(held.attitude[2, axis], TILT_SIGMA_RAD)
+    known[TURNED_RAD2] += azimuth_variance_rad2(held.attitude[2, axis], TILT_SIGMA_RAD)
     free = boot.free
     free.attitude[:], free.sensors[:], free.velocity[:] = held.attitude, held.sensors, held.velocity
     free.covariance[:] = 0.0
-    doubt_free(free, mean / (upto - max(2 * middle - upto, 0)), 1, boot.gyros[BIAS_RADPS])
+    initial_free_covariance(free, mean / (upto - max(2 * middle - upto, 0)), 1, boot.gyros[BIAS_RADPS])
     boot.footing[FOOTHOLD_M] = below[2]
-    boot.told[0] = -1.0
+    boot.levelling[0] = -1.0
     start_free(boot)
     return True
 
 
 @njit(cache=True, error_model="numpy")
-def _feel(felt: Array, sample: Array) -> None:
-    """What a boot has felt before its first sample: what it feels now, for all that is known."""
-    felt[:] = 0.0
-    felt[:3] = felt[5:8] = felt[LAST : LAST + 3] = sample[:3]
+def _begin_stance(stance: Array, sample: Array) -> None:
+    """Start a stance detector as if its first specific force had lasted for ever, in place."""
+    stance[:] = 0.0
+    stance[:3] = stance[5:8] = stance[LAST : LAST + 3] = sample[:3]
 
 
 @njit(cache=True, error_model="numpy")
-def face_on(boot: Boot) -> None:
-    """Note what a boot faces when samples begin to be missing: it may be in the middle of a turn."""
+def keep_heading(boot: Boot) -> None:
+    """Store the heading at which samples begin to be missing, unless its axis points up or down."""
     if abs(boot.held.attitude[2, int(boot.known[AXIS])]) < STEEP:
-        face(boot)
+        note_heading(boot)

@@ -23,7 +23,7 @@ HELD_S, STOOD, FOOTHOLD_M, FLAT_M, FLAT_M2 = range(5)
 """What `footing` holds."""
 BRANCHED_M, APART_M, GLIDES_MPS, GLID_M, MOVED_M2, SINCE_S, RESTLESS_S, STRIDES = 0, 3, 5, 7, 9, 11, 12, 13
 REJECTED_MPS, BLOWN_M2PS4 = 14, 15
-"""Where each begins in `loose`."""
+"""Where each begins in `comparison`."""
 RATES, SQUARES, SECONDS, BIAS_RADPS, CHANGED, RESTED_S = 0, 3, 4, 5, 6, 7
 """Where each begins in `gyros`."""
 
@@ -59,8 +59,8 @@ class Boot(NamedTuple):
             to be, and no states.
         free: navigation from where it last rested, held by nothing but rests: its place counts from there.
             What its sensors are off by are states of it.
-        felt: what the last samples were like, see `zero_velocity.add_sample`.
-        told: what is gathered while it is levelled, see `TOLD`; its first number is −1 afterwards.
+        stance: what the last samples were like, see `zero_velocity.add_sample`.
+        levelling: what is gathered while it is levelled, see `TOLD`; its first number is −1 afterwards.
         known: gravity as the unit feels it (m/s²); what its x axis faced when it last stood (rad); which of
             its axes tells that, the most level one; and that one's direction less the x axis' (rad). By how
             much it has turned since it began, to the left, whole turns included (rad); the most that this has
@@ -68,12 +68,12 @@ class Boot(NamedTuple):
         footing: how long ago a standstill last held it (s); how many standstills in a row have held it; how
             high its last foothold was (m); how far it would have risen were floors not flat (m); and what
             that adds to the variance of its height (m²): 5.
-        loose: where it was when `free` began, 3 (m); then, across and up each: how far apart the two have
-            been told to be (m); how fast it glides though it seems to stand, and nobody knows how far (m/s);
-            how far that may have led (m); and what all this adds to the variance of its place (m²). How long
-            ago `free` began (s); for how long it has seemed to stand, but not to rest (s); and since `free`
-            began: strides, how fast it was when a rest was not believed (m/s), and by how much its force has
-            changed from one sample to the next, squared (m²/s⁴): 16.
+        comparison: of `held` and `free`. Where it was when `free` began, 3 (m); then, across and up each: how
+            far apart the two have been told to be (m); how fast it glides though it seems to stand, and
+            nobody knows how far (m/s); how far that may have led (m); and what all this adds to the variance
+            of its place (m²). How long ago `free` began (s); for how long it has seemed to stand, but not to
+            rest (s); and since `free` began: strides, how fast it was when a rest was not believed (m/s), and
+            by how much its force has changed from one sample to the next, squared (m²/s⁴): 16.
         unheld: velocity (m/s) and way (m) that it seems to have while it stands, 6: that may move, too.
         gyros: what they have reported in this rest, summed up: rates 3, their squares, seconds; how well
             their biases are known (rad/s); what the bias of its heading is less sure by than of one that has
@@ -84,11 +84,11 @@ class Boot(NamedTuple):
 
     held: Strapdown
     free: Strapdown
-    felt: Array
-    told: Array
+    stance: Array
+    levelling: Array
     known: Array
     footing: Array
-    loose: Array
+    comparison: Array
     unheld: Array
     gyros: Array
     clipped: Array
@@ -109,33 +109,33 @@ class Boot(NamedTuple):
             np.zeros(CLIPPED),
         )
 
-    def anew(self) -> Self:
-        """One that is to be levelled again, and faces what this one faced when it last stood."""
+    def to_level_again(self) -> Self:
+        """The same unit to be levelled again, with its biases and the heading at which it last stood."""
         again = self.new(self.heading_rad)
         again.known[AXIS:] = self.known[AXIS:]
         again.footing[FLAT_M] = self.footing[FLAT_M]
         again.held.sensors[:] = self.held.sensors
         again.known[GRAVITY] = self.known[GRAVITY]
-        again.loose[GLIDES_MPS : GLID_M + 2] = self.loose[GLIDES_MPS : GLID_M + 2]
+        again.comparison[GLIDES_MPS : GLID_M + 2] = self.comparison[GLIDES_MPS : GLID_M + 2]
         again.gyros[BIAS_RADPS] = self.gyros[BIAS_RADPS]
         again.clipped[:] = self.clipped
         return again
 
     def copy(self) -> Self:
-        """Another one that may be changed."""
+        """An independent copy."""
         held, free, *rest = self
         one, other = (Strapdown(*(array.copy() for array in each)) for each in (held, free))
         return type(self)(one, other, *(array.copy() for array in rest))
 
     @property
     def levelled(self) -> bool:
-        """Whether it is known what is up: before that it navigates nothing."""
-        return bool(self.told[0] < 0.0)
+        """Whether its attitude is known: before that nothing is navigated."""
+        return bool(self.levelling[0] < 0.0)
 
     @property
-    def sought(self) -> bool:
-        """Whether it is to be levelled again, and nothing is gathered for that yet."""
-        return bool(self.told[0] == 0.0 and self.gyros[BIAS_RADPS] > 0.0)
+    def to_be_levelled(self) -> bool:
+        """Whether it waits to be levelled again after a gap, with no sample gathered yet."""
+        return bool(self.levelling[0] == 0.0 and self.gyros[BIAS_RADPS] > 0.0)
 
     @property
     def heading_rad(self) -> float:

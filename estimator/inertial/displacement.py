@@ -59,7 +59,7 @@ def displacement_of(boot: Boot, node: str, from_t: float, t: float, unsure_m2: f
     east, north, up = held.place.tolist()
     speed_m2 = max(float(held.covariance[velocities, velocities].max()), 0.0) * (t - from_t) ** 2
     way_m2 = STRIDE_SIGMA_M_PER_ROOT_M**2 * float(np.sqrt(np.dot(held.place, held.place)))
-    moved_m2, lifted_m2 = boot.loose[MOVED_M2 : MOVED_M2 + 2].tolist()
+    moved_m2, lifted_m2 = boot.comparison[MOVED_M2 : MOVED_M2 + 2].tolist()
     # What it stands on may have moved: then it went so far at least, but for what its sensors feel at rest.
     felt_m2 = (FELT_OFF_MPS2 * UNHELD_S * (t - from_t)) ** 2
     moved_m2 = max(moved_m2, float(np.dot(boot.unheld[3:], boot.unheld[3:])) - felt_m2)

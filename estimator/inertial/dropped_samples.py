@@ -33,7 +33,7 @@ def bridge(boot: Boot, before: Array, after: Array, missing: int, off_s: float) 
     """
     shares = (np.arange(1, missing + 1) / (missing + 1.0))[:, None]
     found = before + shares * (after - before)
-    velocity, turned_rad2 = boot.held.velocity, turned_by(found, off_s)
+    velocity, turned_rad2 = boot.held.velocity, short_turn_rad2(found, off_s)
     lost_m2 = (BRIDGED_OFF * off_s) ** 2 * float(np.dot(velocity, velocity))
     for each in (boot.held, boot.free):
         each.covariance[range(ATTITUDE, FORCE), range(ATTITUDE, FORCE)] += turned_rad2
@@ -43,8 +43,8 @@ def bridge(boot: Boot, before: Array, after: Array, missing: int, off_s: float) 
     return found, lost_m2, turned_rad2
 
 
-def turned_by(samples: Array, off_s: float) -> float:
-    """Variance of what a boot faces by what it turns while samples are missing (rad²).
+def short_turn_rad2(samples: Array, off_s: float) -> float:
+    """Variance of a heading by what a boot turns in a short gap, from the rates at both its ends (rad²).
 
     Args:
         samples: in the place of the missing ones, or beside them, k × 6 (m/s², rad/s).
@@ -53,6 +53,6 @@ def turned_by(samples: Array, off_s: float) -> float:
     return (BRIDGED_OFF * off_s) ** 2 * float((samples[:, 3:] ** 2).sum(axis=1).max())
 
 
-def turned_unseen(gone_s: float) -> float:
-    """Variance of what a boot faces while samples are missing for longer (s): he may turn (rad²)."""
+def long_turn_rad2(gone_s: float) -> float:
+    """Variance of a heading by what its bearer may turn in a long gap of `gone_s` (s) (rad²)."""
     return min(TURNS_RADPS * gone_s, TURNED_RAD + TURNED_RADPS * gone_s, ANYWHERE_RAD) ** 2

@@ -32,7 +32,7 @@ from estimator.inertial.boot import (
 from estimator.inertial.rotations import azimuth_rad, turned_about
 from estimator.inertial.strapdown import remove_errors, zero_velocity_update
 from estimator.inertial.zero_velocity import ALIKE_S, QUIET
-from estimator.inertial.zupt import face, hold_level
+from estimator.inertial.zupt import hold_level, note_heading
 
 QUIET_S, AGAIN_S = 0.2, 0.3
 """What is quiet for so long may rest; nearer to each other, rests have the same error: they count once."""
@@ -73,45 +73,48 @@ def hold_or_release(boot: Boot, sigma_mps: float) -> None:
         boot: changed in place; it seems to stand.
         sigma_mps: how fast it may be (m/s).
     """
-    free, loose, quiet_s = boot.free, boot.loose, boot.felt[QUIET]
+    free, comparison, quiet_s = boot.free, boot.comparison, boot.stance[QUIET]
     strides = boot.footing[STOOD] == 1.0
-    loose[STRIDES] += 1.0 if strides else 0.0
-    loose[RESTLESS_S] = 0.0 if strides or quiet_s > QUIET_S else loose[RESTLESS_S] + ALIKE_S
+    comparison[STRIDES] += 1.0 if strides else 0.0
+    comparison[RESTLESS_S] = 0.0 if strides or quiet_s > QUIET_S else comparison[RESTLESS_S] + ALIKE_S
     speeds_m2 = np.diag(free.covariance)[VELOCITY:ATTITUDE]
     if speeds_m2.max() > LOST_MPS**2:
-        _lose(boot)
-    elif quiet_s > QUIET_S and loose[SINCE_S] > AGAIN_S:
-        _rest(boot, np.sqrt(sigma_mps**2 + BEGUN_MPS**2))
+        _restart_free(boot)
+    elif quiet_s > QUIET_S and comparison[SINCE_S] > AGAIN_S:
+        _try_rest(boot, np.sqrt(sigma_mps**2 + BEGUN_MPS**2))
 
 
 @njit(cache=True, error_model="numpy")
-def _rest(boot: Boot, sigma_mps: float) -> None:
-    """It seems to rest: it does if its velocity may be nil, and has gone back to that if it was not."""
-    free, loose = boot.free, boot.loose
+def _try_rest(boot: Boot, sigma_mps: float) -> None:
+    """Hold the free navigation at velocity 0 if that is plausible: within `RESTING`, and slower than before.
+
+    Where it then contradicts the held navigation, the boot was moved and the free one is adopted.
+    """
+    free, comparison = boot.free, boot.comparison
     speed_mps = np.sqrt(np.dot(free.velocity, free.velocity))
-    back = loose[REJECTED_MPS] == 0.0 or speed_mps < BACK * loose[REJECTED_MPS]
-    if back and _squared(free, VELOCITY, free.velocity, sigma_mps) < RESTING:
+    back = comparison[REJECTED_MPS] == 0.0 or speed_mps < BACK * comparison[REJECTED_MPS]
+    if back and _mahalanobis2(free, VELOCITY, free.velocity, sigma_mps) < RESTING:
         error = np.zeros(ERRORS)
         zero_velocity_update(free, error, np.zeros(3), sigma_mps)
         remove_errors(free, error)
-        apart = apart_m(boot)
-        if contradicts(boot) and np.dot(apart, apart) < (CARRIED_MPS * loose[SINCE_S]) ** 2:
-            _believe(boot)
-        if boot.felt[QUIET] < loose[SINCE_S]:
+        apart = separation_m(boot)
+        if contradicts(boot) and np.dot(apart, apart) < (CARRIED_MPS * comparison[SINCE_S]) ** 2:
+            _adopt_free(boot)
+        if boot.stance[QUIET] < comparison[SINCE_S]:
             # Who was given up while all was quiet rides on until something happens.
-            loose[GLIDES_MPS : GLID_M + 2] = 0.0
+            comparison[GLIDES_MPS : GLID_M + 2] = 0.0
         start_free(boot)
         return
-    loose[REJECTED_MPS] = max(loose[REJECTED_MPS], speed_mps)
-    if boot.felt[QUIET] > RESTS_S and loose[BLOWN_M2PS4] >= BLOW_MPS2**2:
+    comparison[REJECTED_MPS] = max(comparison[REJECTED_MPS], speed_mps)
+    if boot.stance[QUIET] > RESTS_S and comparison[BLOWN_M2PS4] >= BLOW_MPS2**2:
         # Its accelerometers could not follow: what they made of a blow is no ride.
-        _lose(boot)
-        loose[GLIDES_MPS : GLID_M + 2] = 0.0
+        _restart_free(boot)
+        comparison[GLIDES_MPS : GLID_M + 2] = 0.0
 
 
 @njit(cache=True, error_model="numpy")
-def _squared(boot: Strapdown, state: int, value: Array, sigma: float) -> float:
-    """How unlikely errors of `value`, from `state` on, are by their covariance: vᵀ (P + σ² I)⁻¹ v."""
+def _mahalanobis2(boot: Strapdown, state: int, value: Array, sigma: float) -> float:
+    """Squared Mahalanobis distance of errors `value`, the states from `state` on: vᵀ (P + σ² I)⁻¹ v."""
     size = len(value)
     spread = boot.covariance[state : state + size, state : state + size].copy()
     left, found = value.copy(), 0.0
@@ -128,9 +131,9 @@ def _squared(boot: Strapdown, state: int, value: Array, sigma: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def apart_m(boot: Boot) -> Array:
+def separation_m(boot: Boot) -> Array:
     """From where the held navigation is to where the free one is, 3 (m)."""
-    return boot.loose[BRANCHED_M : BRANCHED_M + 3] + boot.free.place - boot.held.place
+    return boot.comparison[BRANCHED_M : BRANCHED_M + 3] + boot.free.place - boot.held.place
 
 
 @njit(cache=True, error_model="numpy")
@@ -139,33 +142,33 @@ def contradicts(boot: Boot) -> bool:
 
     Only where the boot has seemed to stand all the time: strides both follow in their own ways.
     """
-    stood = boot.loose[STRIDES] == 0.0
-    return bool(stood and _squared(boot.free, 0, apart_m(boot), APART_SIGMA_M) > MOVED)
+    stood = boot.comparison[STRIDES] == 0.0
+    return bool(stood and _mahalanobis2(boot.free, 0, separation_m(boot), APART_SIGMA_M) > MOVED)
 
 
 @njit(cache=True, error_model="numpy")
-def _believe(boot: Boot) -> None:
-    """It has been moved while it seemed to stand, and now it rests: what the free navigation tells is so."""
-    held, free, loose = boot.held, boot.free, boot.loose
-    apart = apart_m(boot)
+def _adopt_free(boot: Boot) -> None:
+    """Put the free navigation in the place of the held one: the boot was moved while it seemed to stand."""
+    held, free, comparison = boot.held, boot.free, boot.comparison
+    apart = separation_m(boot)
     held.place[:] += apart
     across = max(free.covariance[0, 0], free.covariance[1, 1])
-    loose[MOVED_M2] += across + BELIEVED_OFF**2 * (apart[0] ** 2 + apart[1] ** 2)
-    loose[MOVED_M2 + 1] += free.covariance[2, 2] + BELIEVED_OFF**2 * apart[2] ** 2
+    comparison[MOVED_M2] += across + BELIEVED_OFF**2 * (apart[0] ** 2 + apart[1] ** 2)
+    comparison[MOVED_M2 + 1] += free.covariance[2, 2] + BELIEVED_OFF**2 * apart[2] ** 2
     held.velocity[:] = free.velocity
     held.attitude[:] = free.attitude
     held.covariance[:FORCE, :FORCE] = free.covariance[:FORCE, :FORCE]
     hold_level(boot)
-    face(boot)
+    note_heading(boot)
 
 
 @njit(cache=True, error_model="numpy")
 def start_free(boot: Boot) -> None:
-    """The free navigation goes on from where the held one is, and faces what that faces."""
-    held, free, loose = boot.held, boot.free, boot.loose
-    loose[BRANCHED_M : BRANCHED_M + 3] = held.place
-    loose[APART_M : APART_M + 2] = 0.0
-    loose[SINCE_S] = loose[STRIDES] = loose[REJECTED_MPS] = loose[BLOWN_M2PS4] = 0.0
+    """Start the free navigation at the held one's place and heading; attitude and sensors stay its own."""
+    held, free, comparison = boot.held, boot.free, boot.comparison
+    comparison[BRANCHED_M : BRANCHED_M + 3] = held.place
+    comparison[APART_M : APART_M + 2] = 0.0
+    comparison[SINCE_S] = comparison[STRIDES] = comparison[REJECTED_MPS] = comparison[BLOWN_M2PS4] = 0.0
     axis = int(boot.known[AXIS])
     turned_rad = azimuth_rad(held.attitude, axis) - azimuth_rad(free.attitude, axis)
     free.attitude[:] = turned_about(np.array([0.0, 0.0, turned_rad]), free.attitude)
@@ -177,17 +180,17 @@ def start_free(boot: Boot) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def _lose(boot: Boot) -> None:
-    """Give up the free navigation: it goes on with the velocity that the held one has."""
-    held, free, loose = boot.held, boot.free, boot.loose
-    far_m = np.sqrt(loose[APART_M] ** 2 + loose[APART_M + 1] ** 2)
-    speed_mps = max(loose[REJECTED_MPS], far_m / max(loose[SINCE_S], RIDE_S))
+def _restart_free(boot: Boot) -> None:
+    """Restart a free navigation that knows too little, with the held velocity; what is open may go on."""
+    held, free, comparison = boot.held, boot.free, boot.comparison
+    far_m = np.sqrt(comparison[APART_M] ** 2 + comparison[APART_M + 1] ** 2)
+    speed_mps = max(comparison[REJECTED_MPS], far_m / max(comparison[SINCE_S], RIDE_S))
     for c in range(2):
-        if loose[STRIDES] > 0.0:
-            loose[GLIDES_MPS + c] = loose[GLID_M + c] = 0.0
-        elif loose[SINCE_S] > RIDE_S and far_m > 0.0:
-            glides_mps = speed_mps * loose[APART_M + c] / far_m
-            loose[GLIDES_MPS + c] = max(loose[GLIDES_MPS + c], glides_mps)
+        if comparison[STRIDES] > 0.0:
+            comparison[GLIDES_MPS + c] = comparison[GLID_M + c] = 0.0
+        elif comparison[SINCE_S] > RIDE_S and far_m > 0.0:
+            glides_mps = speed_mps * comparison[APART_M + c] / far_m
+            comparison[GLIDES_MPS + c] = max(comparison[GLIDES_MPS + c], glides_mps)
     # What gyros and rests have told of its attitude and its sensors stays as good as it is.
     free.velocity[:] = held.velocity
     free.covariance[VELOCITY:ATTITUDE, :] = 0.0
@@ -199,19 +202,19 @@ def _lose(boot: Boot) -> None:
 
 @njit(cache=True, error_model="numpy")
 def add_doubt(boot: Boot, since_s: float) -> None:
-    """Add to the doubt of its place by how far it may have been moved, as is not known yet, or never will be.
+    """Add to the place's variance what an undecided or unobservable motion may have moved the boot by.
 
     Args:
         boot: changed in place.
         since_s: time since this was done last (s).
     """
-    loose, contradicted, apart = boot.loose, contradicts(boot), apart_m(boot)
+    comparison, contradicted, apart = boot.comparison, contradicts(boot), separation_m(boot)
     for c in range(2):
         far_m = np.sqrt(apart[0] ** 2 + apart[1] ** 2) if c == 0 else abs(apart[2])
         if contradicted:
-            loose[MOVED_M2 + c] += max(far_m**2 - loose[APART_M + c] ** 2, 0.0)
-            loose[APART_M + c] = max(loose[APART_M + c], far_m)
-        dragged_mps = DRAGGED_MPS if c == 0 and loose[RESTLESS_S] > DRAGGED_S else 0.0
-        more_m = max(loose[GLIDES_MPS + c], dragged_mps) * since_s
-        loose[MOVED_M2 + c] += more_m * (more_m + 2.0 * loose[GLID_M + c])
-        loose[GLID_M + c] += more_m
+            comparison[MOVED_M2 + c] += max(far_m**2 - comparison[APART_M + c] ** 2, 0.0)
+            comparison[APART_M + c] = max(comparison[APART_M + c], far_m)
+        dragged_mps = DRAGGED_MPS if c == 0 and comparison[RESTLESS_S] > DRAGGED_S else 0.0
+        more_m = max(comparison[GLIDES_MPS + c], dragged_mps) * since_s
+        comparison[MOVED_M2 + c] += more_m * (more_m + 2.0 * comparison[GLID_M + c])
+        comparison[GLID_M + c] += more_m

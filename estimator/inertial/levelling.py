@@ -25,7 +25,7 @@ from estimator.inertial.boot import (
 )
 from estimator.inertial.rotations import azimuth_rad, level
 from estimator.inertial.strapdown import FORCE_SIGMA_MPS2, SCALE_SIGMA, remove_errors
-from estimator.inertial.zaru import ANEW_RAD2PS2, KNOWN_RADPS, RESTED_RADPS, UNRESTED_RADPS, believed
+from estimator.inertial.zaru import ANEW_RAD2PS2, KNOWN_RADPS, RESTED_RADPS, UNRESTED_RADPS, bias_share
 
 GRAVITY_OFF_MPS2 = 0.6
 """What a unit at rest may feel more or less of gravity: small accelerometers are off by 0.2 to 0.4 m/s² (20
@@ -54,7 +54,7 @@ UP_SIGMA_MPS2 = 0.03
 
 
 @njit(cache=True, error_model="numpy")
-def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
+def add_levelling_sample(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
     """Take in a sample of a boot that is to be levelled, and level it when there are enough.
 
     Args:
@@ -63,7 +63,7 @@ def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
         rate: angular rate, 3 (rad/s).
         step_s: time from one sample to the next (s).
     """
-    told = boot.told
+    told = boot.levelling
     told[0] += 1.0
     told[8] += step_s
     for c in range(3):
@@ -92,7 +92,7 @@ def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
     if rests and (boot.gyros[BIAS_RADPS] == 0.0 or boot.gyros[BIAS_RADPS] > KNOWN_RADPS):
         # What rests in its first quarter of a second and not in its second one has begun to move.
         unsettled = told[9:12] / told[0]
-        share, more2 = believed(turning, np.dot(unsettled, unsettled))
+        share, more2 = bias_share(turning, np.dot(unsettled, unsettled))
         held.sensors[6:] = share * turning
         boot.gyros[CHANGED] = more2 if more2 > (UNSETTLED * RESTED_RADPS) ** 2 else 0.0
         if boot.gyros[BIAS_RADPS] > 0.0:
@@ -103,7 +103,9 @@ def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
         boot.gyros[CHANGED] = UNRESTED_RADPS**2 - RESTED_RADPS**2
     held.attitude[:] = level(mean, int(boot.known[AXIS]), boot.known[HEADING] + boot.known[AZIMUTH])
     unrested = 0 if rests else 1
-    boot.known[TURNED_RAD2] += veered_rad2(held.attitude[2, int(boot.known[AXIS])], TILT_SIGMA_RAD[unrested])
+    boot.known[TURNED_RAD2] += azimuth_variance_rad2(
+        held.attitude[2, int(boot.known[AXIS])], TILT_SIGMA_RAD[unrested]
+    )
     for axis in range(2):
         if abs(held.attitude[2, axis]) <= abs(held.attitude[2, 1 - axis]):
             boot.known[AXIS] = float(axis)
@@ -115,15 +117,15 @@ def gather(boot: Boot, force: Array, rate: Array, step_s: float) -> None:
         held.covariance[ATTITUDE + c, ATTITUDE + c] = TILT_SIGMA_RAD[unrested] ** 2
     free.attitude[:] = held.attitude
     free.sensors[:] = held.sensors
-    doubt_free(free, mean, unrested, boot.gyros[BIAS_RADPS])
+    initial_free_covariance(free, mean, unrested, boot.gyros[BIAS_RADPS])
     if rests:
-        _weigh(free, mean)
+        _hold_gravity(free, mean)
     told[0] = -1.0
 
 
 @njit(cache=True, error_model="numpy")
-def veered_rad2(up: float, tilt_rad: float) -> float:
-    """Variance of what an axis faces, seen from above, by a tilt that is not known: the steeper, the more.
+def azimuth_variance_rad2(up: float, tilt_rad: float) -> float:
+    """Variance of an axis' azimuth by an unknown tilt (rad²): the steeper the axis, the larger.
 
     Turned about what it faces by a small tilt, an axis of elevation e veers by the tilt times tan e.
 
@@ -136,8 +138,15 @@ def veered_rad2(up: float, tilt_rad: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def doubt_free(boot: Strapdown, force: Array, unrested: int, bias_radps: float) -> None:
-    """What is not known of a navigation whose sensors are states, and which has just been levelled."""
+def initial_free_covariance(boot: Strapdown, force: Array, unrested: int, bias_radps: float) -> None:
+    """Set the covariance of a free navigation that has just been levelled, in place.
+
+    Args:
+        boot: the navigation; its sensors' biases and scales are states.
+        force: mean specific force that it was levelled by, 3 (m/s²).
+        unrested: 0 where the boot rested meanwhile, 1 where it did not.
+        bias_radps: standard deviation of its gyros' biases (rad/s).
+    """
     covariance, attitude = boot.covariance, boot.attitude
     for c in range(3):
         covariance[VELOCITY + c, VELOCITY + c] = SWING_SIGMA_MPS[unrested] ** 2
@@ -158,8 +167,8 @@ def doubt_free(boot: Strapdown, force: Array, unrested: int, bias_radps: float) 
 
 
 @njit(cache=True, error_model="numpy")
-def _weigh(boot: Strapdown, force: Array) -> None:
-    """What accelerometers at rest feel more or less than gravity is their own."""
+def _hold_gravity(boot: Strapdown, force: Array) -> None:
+    """Update biases and scales by the size of a force at rest, which is gravity's: 3 (m/s²)."""
     pull = np.sqrt(np.dot(force, force))
     row = np.zeros(ERRORS)
     for c in range(3):

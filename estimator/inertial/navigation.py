@@ -6,7 +6,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from estimator.graph.dense import Array
-from estimator.inertial.after_gaps import SOUGHT_S, face_on, find_standstill, level_backwards
+from estimator.inertial.after_gaps import SOUGHT_S, find_standstill, keep_heading, level_backwards
 from estimator.inertial.boot import (
     BIAS_RADPS,
     CHANGED,
@@ -19,33 +19,33 @@ from estimator.inertial.boot import (
     Boot,
 )
 from estimator.inertial.displacement import InertialDisplacement, displacement_of
-from estimator.inertial.dropped_samples import BRIDGED_S, TURNING_S, bridge, turned_by, turned_unseen
+from estimator.inertial.dropped_samples import BRIDGED_S, TURNING_S, bridge, long_turn_rad2, short_turn_rad2
 from estimator.inertial.levelling import ALIGN_S
 from estimator.inertial.plausibility import plausible_displacement
-from estimator.inertial.sample_rate import Clock, hears
+from estimator.inertial.sample_rate import Clock, add_epoch
 from estimator.inertial.samples import Samples
 from estimator.inertial.short_gaps import CROSSED_S, cross, edge_of
-from estimator.inertial.stuck_sensor import drop_stuck_samples, unwatched
+from estimator.inertial.stuck_sensor import drop_stuck_samples, initial_watch
 from estimator.inertial.zaru import TOLD_AFTER_S
 from estimator.inertial.zupt_aided import advance
 from estimator.measurements.imu import RATE_MIN_HZ
 
-EACH_S = 0.5
+DISPLACEMENT_S = 0.5
 """A displacement is told so often."""
 JITTER_S, JITTER_MOST_S = 0.002, 0.05
 """By so much epochs are off that a gateway gives, before they have told; and by so much at most, where
 samples follow each other all the same."""
 UNUSUAL = 4.0
 """An epoch that is late by more of the usual jitters is no jitter: samples are missing."""
-FOLLOWED, TOLD = 0.2, 0.1
+CLOCK_GAIN, JITTER_GAIN = 0.2, 0.1
 """So much of a jitter the boot's own clock follows with each piece, that none of the two clocks runs away;
 and so much a piece tells of how much they jitter."""
-UNPACED = 3.0
+PACE_SIGMAS = 3.0
 """What comes early by no more sigmas of its clock's pace may follow all the same, where nothing repeats."""
 STEEP_RAD = 0.1  # as much as a heading is unsure by that is told without a sigma
 STEEP = "what its x axis faces can hardly be told when it begins: it points up or down, or the boot moves"
 REPORTED = "samples of this time were reported before"
-BEGUN_MOST = 8
+READINGS_MOST = 8
 """Of so many readings at once it is known that a part was new."""
 
 
@@ -59,7 +59,7 @@ class Navigation(NamedTuple):
         unsure_m2: variance of its place by what has been bridged since `told_t` (m²).
         jitter_s2: variance of the epochs that its gateway gives (s²).
         newest: its newest sample, 6 (m/s², rad/s).
-        watch: what has been seen of it, see `stuck_sensor.watched`.
+        watch: what has been seen of it, see `stuck_sensor.watch_channels`.
         waiting: its newest samples which may turn out to be no readings, k × 6: they are not in `boot`.
         unplaced: samples since some were missing, m × 6, which wait for a standstill: they are not in `boot`.
         edge: how it moved before them, if the way over that gap can be told, see `short_gaps.edge_of`.
@@ -90,11 +90,9 @@ class Navigation(NamedTuple):
     @classmethod
     def new(cls, t: float, heading_rad: float, rate_hz: float) -> Self:
         """That of a boot of which nothing is known at `t` but what its x axis faces, and its rate is told."""
-        began = t, t, heading_rad, 0.0, JITTER_S**2
+        began = t, t, heading_rad, 0.0, JITTER_S**2, np.zeros(6), initial_watch()
         empty = np.zeros((0, 6)), np.zeros((0, 6)), np.zeros(0), np.zeros(0)
-        return cls(
-            *began, np.zeros(6), unwatched(), *empty, 0, 0.0, Clock.new(rate_hz), Boot.new(heading_rad)
-        )
+        return cls(*began, *empty, 0, 0.0, Clock.new(rate_hz), Boot.new(heading_rad))
 
 
 class Navigated(NamedTuple):
@@ -123,27 +121,27 @@ def navigate(before: Navigation | None, piece: Samples, heading_rad: float) -> N
         piece: the samples.
         heading_rad: direction of the sensor's x axis at rest, seen from above, where the node is new.
     """
-    done = _navigated(before or Navigation.new(piece.t, heading_rad, piece.rate_hz), piece)
+    done = _navigate_piece(before or Navigation.new(piece.t, heading_rad, piece.rate_hz), piece)
     known, text = done.navigation, done.text
     others = known.begun[known.begun != piece.first_t]
     taken = text is None or bool(done.displacements) or len(others) < len(known.begun)
     if text == REPORTED and (taken or not piece.last):
         text = None  # What overlaps is nothing new; what brings nothing else is said to.
-    begun = others if piece.last or not taken else np.append(others, piece.first_t)[-BEGUN_MOST:]
+    begun = others if piece.last or not taken else np.append(others, piece.first_t)[-READINGS_MOST:]
     return done._replace(navigation=known._replace(begun=begun), text=text, taken=taken)
 
 
-def _navigated(known: Navigation, piece: Samples) -> Navigated:
+def _navigate_piece(known: Navigation, piece: Samples) -> Navigated:
     if piece.rate_hz < RATE_MIN_HZ:
         text = f"{piece.rate_hz:g} samples a second are fewer than {RATE_MIN_HZ:g}"
         return Navigated(known, [], 0.0, text)
     samples, span_s = piece.array, known.clock.counted / piece.rate_hz
     overlaps = bool((samples == known.newest).all(axis=1).any())
     if piece.t == piece.first_t:
-        known = _timed(known, piece, overlaps)
+        known = _update_clock(known, piece, overlaps)
     step_s, new = known.clock.pace / piece.rate_hz, len(samples)
     off_s = piece.first_t + (piece.t - piece.first_t) * known.clock.pace - known.t
-    usual_s = JITTER_MOST_S if overlaps else max(JITTER_MOST_S, UNPACED * known.clock.sigma * span_s)
+    usual_s = JITTER_MOST_S if overlaps else max(JITTER_MOST_S, PACE_SIGMAS * known.clock.sigma * span_s)
     if off_s < -min(usual_s, 0.5 * max(span_s, piece.count * step_s)):
         samples = samples[round(-off_s / step_s) :]
         if not len(samples):
@@ -151,31 +149,31 @@ def _navigated(known: Navigation, piece: Samples) -> Navigated:
         off_s = 0.0
     counted = known.clock.counted + (len(samples) if overlaps else new)
     known = known._replace(clock=known.clock._replace(counted=counted))
-    samples, known, turned, found = _joined(known, piece.node, off_s, step_s, samples)
+    samples, known, turned, found = _append_samples(known, piece.node, off_s, step_s, samples)
     sifted = drop_stuck_samples(known.watch, known.waiting, samples, known.missing, step_s)
     texts, end_t = [sifted.text], known.t + len(samples) * step_s
     known = known._replace(t=known.t - len(known.waiting) * step_s)
     for missing, some in sifted.parts:
         if missing:
-            known, more, _ = _lost(known, None, step_s * (missing - known.missing), step_s * missing)
+            known, more, _ = _skip_gap(known, None, step_s * (missing - known.missing), step_s * missing)
             turned += more
-        led, known, said = _led(known, piece.node, some, step_s)
+        led, known, said = _integrate(known, piece.node, some, step_s)
         found, texts = found + led, [said, *texts]
     known = known._replace(t=end_t, watch=sifted.watch, waiting=sifted.waiting, missing=sifted.missing)
     return Navigated(known, found, turned, next((text for text in texts if text is not None), None))
 
 
-def _timed(known: Navigation, piece: Samples, overlaps: bool) -> Navigation:
-    """Learn from the epoch of a reading how fast its unit's samples come: those before end accordingly."""
-    clock = hears(known.clock, piece.t, piece.rate_hz, overlaps)
+def _update_clock(known: Navigation, piece: Samples, overlaps: bool) -> Navigation:
+    """Update the unit's clock by a reading's epoch; the end of the samples before it moves accordingly."""
+    clock = add_epoch(known.clock, piece.t, piece.rate_hz, overlaps)
     more_s = (clock.pace - known.clock.pace) * known.clock.counted / known.clock.rate_hz
     return known._replace(t=known.t + more_s, clock=clock)
 
 
-def _joined(
+def _append_samples(
     known: Navigation, node: str, off_s: float, step_s: float, samples: Array
 ) -> tuple[Array, Navigation, float, list[InertialDisplacement]]:
-    """Samples that begin `off_s` after the last one ended, put behind it.
+    """Append samples that begin `off_s` (s) after the last one ended, bridging or skipping what is missing.
 
     A gateway's epochs jitter, and no sample is lost; or some are. What is later than its epochs usually are
     is taken for the latter.
@@ -186,16 +184,16 @@ def _joined(
     """
     before, known = known.newest, known._replace(newest=samples[-1].copy())
     if off_s <= max(1.5 * step_s, UNUSUAL * math.sqrt(known.jitter_s2)):
-        jitter_s2 = known.jitter_s2 + TOLD * (min(off_s**2, JITTER_MOST_S**2) - known.jitter_s2)
-        return samples, known._replace(t=known.t + FOLLOWED * off_s, jitter_s2=jitter_s2), 0.0, []
+        jitter_s2 = known.jitter_s2 + JITTER_GAIN * (min(off_s**2, JITTER_MOST_S**2) - known.jitter_s2)
+        return samples, known._replace(t=known.t + CLOCK_GAIN * off_s, jitter_s2=jitter_s2), 0.0, []
     missing = round(off_s / step_s)
-    if off_s > BRIDGED_S or not (known.boot.levelled or known.boot.sought):
+    if off_s > BRIDGED_S or not (known.boot.levelled or known.boot.to_be_levelled):
         gone, edge = known.missing + len(known.waiting), known.edge[:0]
         if not gone and off_s <= CROSSED_S and known.boot.levelled:
             edge = edge_of(known.t, known.boot, before)
-        known, turned_rad2, found = _lost(known, node, off_s, off_s + gone * step_s)
+        known, turned_rad2, found = _skip_gap(known, node, off_s, off_s + gone * step_s)
         if len(edge) and off_s <= TURNING_S:
-            turned_rad2 = turned_by(np.array([before, samples[0]]), off_s)
+            turned_rad2 = short_turn_rad2(np.array([before, samples[0]]), off_s)
         return samples, known._replace(waiting=known.waiting[:0], edge=edge), turned_rad2, found
     boot = known.boot.copy()
     between, lost_m2, turned_rad2 = bridge(boot, before, samples[0], missing, off_s)
@@ -204,10 +202,10 @@ def _joined(
     return np.vstack([between, samples]), known, turned_rad2, []
 
 
-def _lost(
+def _skip_gap(
     known: Navigation, node: str | None, ahead_s: float, gone_s: float
 ) -> tuple[Navigation, float, list[InertialDisplacement]]:
-    """Go on after missing samples, `ahead_s` from where it is; none have told anything for `gone_s`.
+    """Go on `ahead_s` (s) later after missing samples, `gone_s` (s) after the last one that was used.
 
     Nothing is told of the time up to the gap where there is no `node`: a sensor may have been stuck in it.
 
@@ -221,15 +219,16 @@ def _lost(
             unsure = known.unsure_m2, stretched_m, known.clock.sigma
             found, stretched_m = plausible_displacement(boot, node, (known.told_t, t - gone_s), *unsure)
             boot.known[TURNED_RAD2] = 0.0
-        face_on(boot)
-    known = known._replace(t=t, told_t=t, unsure_m2=0.0, missing=0, stretched_m=stretched_m, boot=boot.anew())
-    return known._replace(unplaced=known.unplaced[:0], edge=known.edge[:0]), turned_unseen(gone_s), found
+        keep_heading(boot)
+    boot = boot.to_level_again()
+    known = known._replace(t=t, told_t=t, unsure_m2=0.0, missing=0, stretched_m=stretched_m, boot=boot)
+    return known._replace(unplaced=known.unplaced[:0], edge=known.edge[:0]), long_turn_rad2(gone_s), found
 
 
-def _sought(
+def _recover_boot(
     known: Navigation, node: str, samples: Array, step_s: float
 ) -> tuple[list[InertialDisplacement], Navigation, Array] | None:
-    """Place a boot after missing samples, or have it levelled as at first where it does not stand for long.
+    """Level a boot after a gap: backwards from a standstill, or as at first after `SOUGHT_S` without one.
 
     Returns:
         The displacement over the gap, if that can be told; where it goes on; all samples after the gap. None:
@@ -247,13 +246,13 @@ def _sought(
     return found, known, samples
 
 
-def _led(
+def _integrate(
     known: Navigation, node: str, samples: Array, step_s: float
 ) -> tuple[list[InertialDisplacement], Navigation, str | None]:
-    """What samples that go on from `known` lead to."""
+    """Navigate samples that follow without a gap: their displacements, the navigation then, and a remark."""
     found: list[InertialDisplacement] = []
-    if known.boot.sought:
-        sought = _sought(known, node, samples, step_s)
+    if known.boot.to_be_levelled:
+        sought = _recover_boot(known, node, samples, step_s)
         if sought is None:
             t = known.t + len(samples) * step_s
             return [], known._replace(t=t, unplaced=np.vstack([known.unplaced, samples])), None
@@ -264,14 +263,14 @@ def _led(
     text, done = None, 0
     while done < len(force):
         # Up to where the next displacement is told, by the boot's own clock.
-        upto = min(max(round((told_t + EACH_S - known.t) / step_s), done + 1), len(force))
+        upto = min(max(round((told_t + DISPLACEMENT_S - known.t) / step_s), done + 1), len(force))
         navigates, known_before = boot.levelled, boot.gyros[BIAS_RADPS] > 0.0
         farthest_rad = float(boot.known[FARTHEST_RAD])
         done += advance(boot, force[done:upto], rate[done:upto], step_s)
         boot.known[TURNED_RAD2] += pace_sigma**2 * (float(boot.known[FARTHEST_RAD]) ** 2 - farthest_rad**2)
         t = known.t + done * step_s
         if not navigates:
-            if not boot.levelled and t > told_t + EACH_S + JITTER_MOST_S:
+            if not boot.levelled and t > told_t + DISPLACEMENT_S + JITTER_MOST_S:
                 text = "its samples feel no gravity: the unit is dead, or measures in other units"
             if boot.levelled and not known_before:
                 # It stood meanwhile, or may have been swung anywhere.
@@ -280,19 +279,19 @@ def _led(
                     text = STEEP
                 boot.gyros[CHANGED] = boot.known[TURNED_RAD2] = 0.0
             told_t = t if boot.levelled else told_t
-        elif t >= told_t + EACH_S - 0.5 * step_s:
+        elif t >= told_t + DISPLACEMENT_S - 0.5 * step_s:
             unsure = unsure_m2, stretched_m, pace_sigma
             some, stretched_m = plausible_displacement(boot, node, (told_t, t), *unsure)
             found += some
             if not some:
                 text = "the boot never stood, or its samples are wrong: it is levelled anew"
-                boot = boot.anew()
+                boot = boot.to_level_again()
             told_t, unsure_m2 = t, 0.0
-            boot.loose[:3] -= boot.held.place
+            boot.comparison[:3] -= boot.held.place
             boot.footing[FOOTHOLD_M] -= boot.held.place[2]
             boot.held.place[:] = boot.unheld[3:] = 0.0
             boot.footing[FLAT_M2] = 0.0
-            boot.loose[MOVED_M2 : MOVED_M2 + 2] = boot.gyros[CHANGED] = boot.known[TURNED_RAD2] = 0.0
+            boot.comparison[MOVED_M2 : MOVED_M2 + 2] = boot.gyros[CHANGED] = boot.known[TURNED_RAD2] = 0.0
             if boot.gyros[RESTED_S] > TOLD_AFTER_S:
                 boot.gyros[RESTED_S] = 0.0
     end_t = known.t + len(force) * step_s

@@ -74,7 +74,7 @@ class Clock(NamedTuple):
         paces[1:, PACE] = wide
         paces[:, PACE_VARIANCE] = [RIGHT**2, *(0.5 * APART) ** 2 * np.ones(len(wide))]
         paces[:, EPOCH], paces[:, JITTER], paces[:, FREEDOM] = np.nan, JITTER_S**2, TOLD_BY
-        return cls(rate_hz, 0, 0.0, *_mixed(paces), paces)
+        return cls(rate_hz, 0, 0.0, *_mix(paces), paces)
 
     @property
     def remark(self) -> str | None:
@@ -87,8 +87,8 @@ class Clock(NamedTuple):
         )
 
 
-def hears(clock: Clock, t: float, rate_hz: float, overlaps: bool) -> Clock:
-    """Take in the epoch of a reading.
+def add_epoch(clock: Clock, t: float, rate_hz: float, overlaps: bool) -> Clock:
+    """Update what is known of a clock by the epoch of a reading.
 
     Args:
         clock: what is known before it.
@@ -100,27 +100,27 @@ def hears(clock: Clock, t: float, rate_hz: float, overlaps: bool) -> Clock:
         clock = Clock.new(rate_hz)
     span_s = clock.counted / clock.rate_hz
     first = bool(np.isnan(clock.paces[0, EPOCH]))
-    early_s = 0.0 if first else _due(clock) + span_s * clock.pace - t
+    early_s = 0.0 if first else _expected_t(clock) + span_s * clock.pace - t
     if early_s > WIDEST * span_s + EARLY_S or (overlaps and early_s > 0.0):
         return clock
     paces = clock.paces.copy()
     if first:
         paces[:, EPOCH], paces[:, VARIANCE] = t, JITTER_S**2
     else:
-        _weigh(paces, t, span_s)
-    return Clock(clock.rate_hz, 0, clock.learned_s + span_s, *_mixed(paces), paces)
+        _update_paces(paces, t, span_s)
+    return Clock(clock.rate_hz, 0, clock.learned_s + span_s, *_mix(paces), paces)
 
 
-def _due(clock: Clock) -> float:
-    """When the first sample of those counted began by what all paces say (s)."""
+def _expected_t(clock: Clock) -> float:
+    """Epoch at which the first of the counted samples began, the weighted mean of all paces (s)."""
     shares = np.exp(clock.paces[:, WEIGHT])
     since_t = clock.paces[0, EPOCH]
     return float(since_t + shares @ (clock.paces[:, EPOCH] - since_t))
 
 
 @njit(cache=True, error_model="numpy")
-def _mixed(paces: Array) -> tuple[float, float]:
-    """Normalise the weights. Returns the pace that is to be used, and what that is off by."""
+def _mix(paces: Array) -> tuple[float, float]:
+    """Normalise the weights, in place. Returns the pace to be used and its standard deviation."""
     most, total = paces[:, WEIGHT].max(), 0.0
     for k in range(len(paces)):
         total += np.exp(paces[k, WEIGHT] - most)
@@ -137,8 +137,8 @@ def _mixed(paces: Array) -> tuple[float, float]:
 
 
 @njit(cache=True, error_model="numpy")
-def _weigh(paces: Array, t: float, span_s: float) -> None:
-    """Hold each pace against an epoch, `span_s` of samples after the one before; in place."""
+def _update_paces(paces: Array, t: float, span_s: float) -> None:
+    """Kalman update of each hypothesis of the pace by an epoch `t`, `span_s` of samples after the last."""
     for k in range(len(paces)):
         one = paces[k]
         one[EPOCH] += span_s * (1.0 + one[PACE])

@@ -73,7 +73,7 @@ def propagate(boot: Strapdown, sample: Array, gravity_mps2: float, size: int, st
     for r in range(3):
         ahead[r] = halfway[r, 0] * sample[0] + halfway[r, 1] * sample[1] + halfway[r, 2] * sample[2]
     kept = np.exp(-2.0 * FORGOTTEN_PER_RAD * np.sqrt(squared))
-    _spread(boot.covariance, halfway, ahead, sample, kept, size, step_s)
+    _propagate_covariance(boot.covariance, halfway, ahead, sample, kept, size, step_s)
     ahead[2] -= gravity_mps2
     for c in range(3):
         boot.place[c] += step_s * (boot.velocity[c] + 0.5 * step_s * ahead[c])
@@ -84,7 +84,7 @@ def propagate(boot: Strapdown, sample: Array, gravity_mps2: float, size: int, st
 
 
 @njit(cache=True, error_model="numpy")
-def _spread(
+def _propagate_covariance(
     covariance: Array, attitude: Array, force: Array, sample: Array, kept: float, size: int, step_s: float
 ) -> None:
     """Covariance after a sample: F P Fᵀ + Q, in place.
@@ -152,14 +152,14 @@ def doubt_force(boot: Strapdown, jerked_m2ps4: float, step_s: float) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def correct(covariance: Array, error: Array, state: int, value: float, sigma: float) -> None:
-    """Take in that a state's error is `value`, but for `sigma`.
+def update_state(covariance: Array, error: Array, state: int, value: float, sigma: float) -> None:
+    """Kalman update by a direct measurement of one state's error.
 
     Args:
         covariance: of the errors, 18 × 18; changed in place.
-        error: takes by what all are to be corrected, 18; what has been found before among them.
+        error: the errors found so far, 18; this update is added to them.
         state: index among the errors.
-        value: what the state is told to be off by.
+        value: the measured error of that state.
         sigma: standard deviation of that.
     """
     variance = covariance[state, state] + sigma * sigma
@@ -174,7 +174,7 @@ def correct(covariance: Array, error: Array, state: int, value: float, sigma: fl
 
 @njit(cache=True, error_model="numpy")
 def remove_errors(boot: Strapdown, error: Array) -> None:
-    """Take out errors that have been found, 18."""
+    """Correct a navigation by the errors that updates have found, 18."""
     for c in range(3):
         boot.place[c] += error[c]
         boot.velocity[c] += error[VELOCITY + c]
@@ -185,13 +185,15 @@ def remove_errors(boot: Strapdown, error: Array) -> None:
 
 @njit(cache=True, error_model="numpy")
 def zero_velocity_update(boot: Strapdown, error: Array, velocity_mps: Array, sigma_mps: float) -> None:
-    """Take in what the velocity of a boot that stands is (ZUPT): the errors of its axes are independent.
+    """Zero-velocity update (ZUPT), axis by axis: a standing boot has the velocity of its rolling.
 
     Args:
         boot: its covariance is changed in place.
-        error: takes by what it is to be corrected, 18.
-        velocity_mps: as fast it is, 3 (m/s).
-        sigma_mps: how far off that may be along each axis (m/s).
+        error: the errors found so far, 18; this update is added to them.
+        velocity_mps: its true velocity, 3 (m/s).
+        sigma_mps: standard deviation of that along each axis (m/s).
     """
     for axis in range(3):
-        correct(boot.covariance, error, VELOCITY + axis, velocity_mps[axis] - boot.velocity[axis], sigma_mps)
+        update_state(
+            boot.covariance, error, VELOCITY + axis, velocity_mps[axis] - boot.velocity[axis], sigma_mps
+        )

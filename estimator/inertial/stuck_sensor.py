@@ -53,8 +53,8 @@ class LiveSamples(NamedTuple):
     text: str | None
 
 
-def unwatched() -> Array:
-    """What has been seen of a unit before its first sample, 37: see `watched`."""
+def initial_watch() -> Array:
+    """What has been seen of a unit before its first sample, 37: see `watch_channels`."""
     watch = np.zeros(ALIVE + 1)
     watch[LAST : LAST + 6] = np.nan
     return watch
@@ -66,7 +66,7 @@ def drop_stuck_samples(
     """Samples without those that repeat though they should not.
 
     Args:
-        watch: what has been seen before, see `watched`.
+        watch: what has been seen before, see `watch_channels`.
         waiting: samples that were left waiting, k × 6 (m/s², rad/s).
         samples: those that follow, m × 6.
         missing: how many are missing before these.
@@ -74,7 +74,7 @@ def drop_stuck_samples(
     """
     watch, values = watch.copy(), np.vstack([waiting, samples])
     stuck = np.zeros(len(values))
-    waits = watched(watch, values, len(waiting), step_s, stuck)
+    waits = watch_channels(watch, values, len(waiting), step_s, stuck)
     upto = len(values) - waits
     edges = np.flatnonzero(np.diff(stuck[:upto] != 0)) + 1
     parts: list[tuple[int, Array]] = []
@@ -104,7 +104,7 @@ def _text(stuck: int) -> str | None:
 
 
 @njit(cache=True, error_model="numpy")
-def watched(watch: Array, values: Array, before: int, step_s: float, stuck: Array) -> int:
+def watch_channels(watch: Array, values: Array, before: int, step_s: float, stuck: Array) -> int:
     """Watch samples for channels that repeat.
 
     Args:
@@ -124,7 +124,7 @@ def watched(watch: Array, values: Array, before: int, step_s: float, stuck: Arra
         rests, turns, moves = _told(values[i])
         for c in range(6):
             # Accelerometers that tell nil all the time say nothing of a motion.
-            _take(watch, c, values[i, c], rests, turns if c < 3 else moves, step_s)
+            _add_value(watch, c, values[i, c], rests, turns if c < 3 else moves, step_s)
         found, doubted = _judged(watch, rests, step_s)
         if found:
             for k in range(i - waits, i + 1):
@@ -148,8 +148,8 @@ def _told(value: Array) -> tuple[bool, bool, bool]:
 
 
 @njit(cache=True, error_model="numpy")
-def _take(watch: Array, channel: int, value: float, rests: bool, moves: bool, step_s: float) -> None:
-    """Take in a channel's next value."""
+def _add_value(watch: Array, channel: int, value: float, rests: bool, moves: bool, step_s: float) -> None:
+    """Update what is known of a channel by its next value."""
     change = value - watch[LAST + channel]
     repeated = watch[REPEATED + channel]
     watch[LAST + channel] = value

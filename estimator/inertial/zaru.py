@@ -5,7 +5,7 @@ from numba import njit
 
 from estimator.graph.dense import Array
 from estimator.inertial.boot import BIAS_RADPS, CHANGED, ERRORS, RATE, RATES, RESTED_S, SECONDS, SQUARES, Boot
-from estimator.inertial.strapdown import RATE_WALK, correct, remove_errors
+from estimator.inertial.strapdown import RATE_WALK, remove_errors, update_state
 from estimator.inertial.zero_velocity import QUIET
 
 REST_S = 2.0
@@ -32,8 +32,8 @@ KNOWN_RADPS = 5e-3
 
 
 @njit(cache=True, error_model="numpy")
-def rest(boot: Boot, rate: Array, step_s: float) -> None:
-    """Take in a sample, and what a rest has told if one has lasted.
+def apply_zaru(boot: Boot, rate: Array, step_s: float) -> None:
+    """Add a sample to the running rest; after each `REST_S` of it, its mean rate updates the biases.
 
     Args:
         boot: changed in place.
@@ -44,7 +44,7 @@ def rest(boot: Boot, rate: Array, step_s: float) -> None:
     if gyros[RESTED_S] > 0.0:
         gyros[RESTED_S] += step_s
     gyros[BIAS_RADPS] = np.sqrt(gyros[BIAS_RADPS] ** 2 + RATE_WALK**2 * step_s)
-    if boot.felt[QUIET] == 0.0:
+    if boot.stance[QUIET] == 0.0:
         gyros[:BIAS_RADPS] = 0.0
         return
     gyros[SECONDS] += step_s
@@ -57,12 +57,12 @@ def rest(boot: Boot, rate: Array, step_s: float) -> None:
     tremble = max(gyros[SQUARES] / gyros[SECONDS] - np.dot(mean, mean), 0.0)
     gyros[:BIAS_RADPS] = 0.0
     if gyros[BIAS_RADPS] > KNOWN_RADPS and np.dot(mean, mean) < TURNING_RADPS**2:
-        _take(boot, mean, np.sqrt(SETTLES_RADPS**2 + TREMBLES**2 * tremble), step_s)
+        _correct_biases(boot, mean, np.sqrt(SETTLES_RADPS**2 + TREMBLES**2 * tremble), step_s)
 
 
 @njit(cache=True, error_model="numpy")
-def believed(turning: Array, told2: float) -> tuple[float, float]:
-    """What of the rates in a first rest is bias: a good unit's is small, and what is more has been a tremble.
+def bias_share(turning: Array, told2: float) -> tuple[float, float]:
+    """The share of the mean rates in a first rest that is bias, over all makes of gyro (`SPREADS_RADPS2`).
 
     Args:
         turning: mean rates, 3 (rad/s).
@@ -86,8 +86,8 @@ def believed(turning: Array, told2: float) -> tuple[float, float]:
 
 
 @njit(cache=True, error_model="numpy")
-def _take(boot: Boot, bias: Array, sigma_radps: float, step_s: float) -> None:
-    """Take in what biases are (rad/s), but for `sigma_radps`."""
+def _correct_biases(boot: Boot, bias: Array, sigma_radps: float, step_s: float) -> None:
+    """Update the gyro biases of both navigations by a measurement of them, 3, with its sigma (rad/s)."""
     gyros, error = boot.gyros, np.zeros(ERRORS)
     known2, told2 = gyros[BIAS_RADPS] ** 2, sigma_radps**2
     changed2 = 0.0
@@ -95,7 +95,7 @@ def _take(boot: Boot, bias: Array, sigma_radps: float, step_s: float) -> None:
         change = (bias[c] - boot.held.sensors[6 + c]) * known2 / (known2 + told2)
         boot.held.sensors[6 + c] += change
         changed2 += change * change
-        correct(boot.free.covariance, error, RATE + c, bias[c] - boot.free.sensors[6 + c], sigma_radps)
+        update_state(boot.free.covariance, error, RATE + c, bias[c] - boot.free.sensors[6 + c], sigma_radps)
     remove_errors(boot.free, error)
     gyros[BIAS_RADPS] = np.sqrt(known2 * told2 / (known2 + told2))
     if changed2 > RESTED_RADPS**2:

@@ -32,11 +32,11 @@ BEFORE = np.array([0.0, 0.0, 0.0, 1e6, 1e6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
 
 
 @njit(cache=True, error_model="numpy")
-def add_sample(felt: Array, force: Array, rate: Array, gravity_mps2: float, step_s: float) -> None:
+def add_sample(stance: Array, force: Array, rate: Array, gravity_mps2: float, step_s: float) -> None:
     """Take in a sample.
 
     Args:
-        felt: mean force 3, squared rate, squared force beside gravity: of the last `REMEMBERED_S`, the
+        stance: mean force 3, squared rate, squared force beside gravity: of the last `REMEMBERED_S`, the
             squares no less than the sample's own; mean force of the last `CHANGED_S` 3; for how long it
             has been quiet (s); the last force 3, and its squared change to it: 13, changed in place.
         force: specific force, 3 (m/s²).
@@ -47,25 +47,25 @@ def add_sample(felt: Array, force: Array, rate: Array, gravity_mps2: float, step
     new, slow = 1.0 - np.exp(-step_s / REMEMBERED_S), 1.0 - np.exp(-step_s / CHANGED_S)
     squared = turning = beside = changed = 0.0
     for c in range(3):
-        felt[c] += new * (force[c] - felt[c])
-        felt[5 + c] += slow * (force[c] - felt[5 + c])
-        changed += (felt[c] - felt[5 + c]) ** 2
-        squared += felt[c] * felt[c]
+        stance[c] += new * (force[c] - stance[c])
+        stance[5 + c] += slow * (force[c] - stance[5 + c])
+        changed += (stance[c] - stance[5 + c]) ** 2
+        squared += stance[c] * stance[c]
         turning += rate[c] ** 2
     mean = np.sqrt(squared)
     scale = gravity_mps2 / max(mean, 1e-9)
     for c in range(3):
-        beside += (force[c] - scale * felt[c]) ** 2
+        beside += (force[c] - scale * stance[c]) ** 2
     # A unit that falls, or is dead, feels steadily what is no gravity.
     beside = max(beside, (mean - gravity_mps2) ** 2)
-    felt[3] = max(turning, felt[3] + new * (turning - felt[3]))
-    felt[4] = max(beside, felt[4] + new * (beside - felt[4]))
-    quiet = changed < QUIET_MPS2**2 and felt[3] < QUIET_RADPS**2
-    felt[QUIET] = felt[QUIET] + step_s if quiet else 0.0
-    felt[JERKED] = 0.0
+    stance[3] = max(turning, stance[3] + new * (turning - stance[3]))
+    stance[4] = max(beside, stance[4] + new * (beside - stance[4]))
+    quiet = changed < QUIET_MPS2**2 and stance[3] < QUIET_RADPS**2
+    stance[QUIET] = stance[QUIET] + step_s if quiet else 0.0
+    stance[JERKED] = 0.0
     for c in range(3):
-        felt[JERKED] += (force[c] - felt[LAST + c]) ** 2
-        felt[LAST + c] = force[c]
+        stance[JERKED] += (force[c] - stance[LAST + c]) ** 2
+        stance[LAST + c] = force[c]
 
 
 @njit(cache=True, error_model="numpy")
@@ -86,12 +86,12 @@ def rolling_mps(attitude: Array, rate: Array) -> Array:
 
 
 @njit(cache=True, error_model="numpy")
-def stance_sigma(felt: Array, since_s: float) -> float:
+def stance_sigma(stance: Array, since_s: float) -> float:
     """How far off that velocity may be along each axis (m/s); infinite where a boot does not stand.
 
     Args:
-        felt: see `add_sample`.
+        stance: see `add_sample`.
         since_s: time since a standstill last counted (s).
     """
-    sigma = np.sqrt(STEADY_MPS**2 + LEVER_M**2 * felt[3] + SHAKEN_S**2 * felt[4])
+    sigma = np.sqrt(STEADY_MPS**2 + LEVER_M**2 * stance[3] + SHAKEN_S**2 * stance[4])
     return float(sigma) if since_s >= ALIKE_S and sigma < MOST_MPS else np.inf

@@ -20,7 +20,7 @@ from estimator.inertial.boot import (
     Boot,
 )
 from estimator.inertial.rotations import azimuth_rad
-from estimator.inertial.strapdown import correct, remove_errors, zero_velocity_update
+from estimator.inertial.strapdown import remove_errors, update_state, zero_velocity_update
 from estimator.inertial.zero_velocity import ALIKE_S, rolling_mps, stance_sigma
 
 UNHELD_S = 1.0
@@ -54,7 +54,7 @@ def apply_zupt(boot: Boot, ahead: Array, rate: Array, step_s: float) -> float:
     """
     footing = boot.footing
     footing[HELD_S] += step_s
-    sigma = stance_sigma(boot.felt, footing[HELD_S])
+    sigma = stance_sigma(boot.stance, footing[HELD_S])
     if not np.isinf(sigma):
         footing[STOOD] = 1.0 if footing[HELD_S] > STRIDE_S else footing[STOOD] + 1.0
         footing[HELD_S] = 0.0
@@ -63,14 +63,14 @@ def apply_zupt(boot: Boot, ahead: Array, rate: Array, step_s: float) -> float:
         remove_errors(boot.held, error)
         if footing[STOOD] == FOOTHOLD:
             hold_level(boot)
-        face(boot)
-    _follow(boot, ahead, step_s)
+        note_heading(boot)
+    _sum_unheld(boot, ahead, step_s)
     return sigma
 
 
 @njit(cache=True, error_model="numpy")
-def _follow(boot: Boot, ahead: Array, step_s: float) -> None:
-    """Sum up what a boot that stands is moved by all the same: in a lift, on a stretcher, where it slides."""
+def _sum_unheld(boot: Boot, ahead: Array, step_s: float) -> None:
+    """Integrate a standing boot's acceleration without ZUPT: a lift, a stretcher or a slide shows there."""
     unheld, stands = boot.unheld, boot.footing[HELD_S] <= 2.0 * ALIKE_S
     for c in range(3):
         unheld[c] = unheld[c] * (1.0 - step_s / UNHELD_S) + step_s * ahead[c] if stands else 0.0
@@ -78,8 +78,8 @@ def _follow(boot: Boot, ahead: Array, step_s: float) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def face(boot: Boot) -> None:
-    """Note what its x axis faces, and how far it has turned: it stands."""
+def note_heading(boot: Boot) -> None:
+    """Store the heading of a standing boot, how far it has turned in all, and the variance that adds."""
     known = boot.known
     heading_rad = azimuth_rad(boot.held.attitude, int(known[AXIS])) - known[AZIMUTH]
     known[TURNED_RAD] += (heading_rad - known[HEADING] + np.pi) % (2.0 * np.pi) - np.pi
@@ -97,7 +97,7 @@ def hold_level(boot: Boot) -> None:
     if abs(rise_m) < LEVEL_M:
         error = np.zeros(ERRORS)
         held.covariance[2, 2] += RISE_SIGMA_M**2
-        correct(held.covariance, error, 2, -rise_m, LEVEL_SIGMA_M)
+        update_state(held.covariance, error, 2, -rise_m, LEVEL_SIGMA_M)
         remove_errors(held, error)
         # Its unit rises with each stride, or the floor does: nothing tells one from the other.
         before_m2 = footing[FLAT_M] ** 2

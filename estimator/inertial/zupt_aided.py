@@ -11,10 +11,10 @@ from numba import njit
 from estimator.graph.dense import Array
 from estimator.inertial.boot import BLOWN_M2PS4, ERRORS, FORCE, GRAVITY, GRAVITY_MPS2, SINCE_S, Boot
 from estimator.inertial.free_navigation import hold_or_release, start_free
-from estimator.inertial.levelling import gather
+from estimator.inertial.levelling import add_levelling_sample
 from estimator.inertial.saturation import doubt, hidden_peak
 from estimator.inertial.strapdown import doubt_force, propagate, without_biases
-from estimator.inertial.zaru import rest
+from estimator.inertial.zaru import apply_zaru
 from estimator.inertial.zero_velocity import JERKED, add_sample
 from estimator.inertial.zupt import apply_zupt
 
@@ -36,10 +36,10 @@ def advance(boot: Boot, force: Array, rate: Array, step_s: float) -> int:
     for i in range(len(force)):
         hidden = hidden_peak(boot.clipped, force[i], rate[i], step_s, lost)
         without_biases(boot.held, force[i], rate[i], sample)
-        add_sample(boot.felt, sample[:3], sample[3:], boot.known[GRAVITY], step_s)
-        if boot.told[0] >= 0.0:
-            gather(boot, force[i], rate[i], step_s)
-            if boot.told[0] < 0.0:
+        add_sample(boot.stance, sample[:3], sample[3:], boot.known[GRAVITY], step_s)
+        if boot.levelling[0] >= 0.0:
+            add_levelling_sample(boot, force[i], rate[i], step_s)
+            if boot.levelling[0] < 0.0:
                 start_free(boot)
                 return i + 1
             continue
@@ -49,10 +49,10 @@ def advance(boot: Boot, force: Array, rate: Array, step_s: float) -> int:
         if hidden:
             doubt(boot.held, lost)
             doubt(boot.free, lost)
-        doubt_force(boot.free, boot.felt[JERKED], step_s)
-        rest(boot, rate[i], step_s)
-        boot.loose[SINCE_S] += step_s
-        boot.loose[BLOWN_M2PS4] = max(boot.loose[BLOWN_M2PS4], boot.felt[JERKED])
+        doubt_force(boot.free, boot.stance[JERKED], step_s)
+        apply_zaru(boot, rate[i], step_s)
+        boot.comparison[SINCE_S] += step_s
+        boot.comparison[BLOWN_M2PS4] = max(boot.comparison[BLOWN_M2PS4], boot.stance[JERKED])
         sigma_mps = apply_zupt(boot, ahead, sample[3:], step_s)
         if not np.isinf(sigma_mps):
             hold_or_release(boot, sigma_mps)

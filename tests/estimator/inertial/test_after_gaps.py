@@ -32,7 +32,7 @@ def test_a_swing_read_backwards_begins_as_it_does_read_forwards(
     """Held against a navigation that has missed nothing."""
     gait = walked([Stride()] * 10, mounted=Rotation.from_rotvec(mounted_rad))
     whole = navigated_boot(gait, at)
-    boot, some = whole.anew(), samples(gait, at, at + 150)
+    boot, some = whole.to_level_again(), samples(gait, at, at + 150)
     upto = find_standstill(boot, some, STEP_S)
     assert upto > 0
     boot.known[1] = azimuth_rad(whole.held.attitude, int(whole.known[2])) - whole.known[3]
@@ -44,14 +44,14 @@ def test_a_swing_read_backwards_begins_as_it_does_read_forwards(
 def test_a_boot_that_swings_all_the_time_is_not_found() -> None:
     gait = walked([Stride()] * 10)
     swing = samples(gait, 400 + 2 * 220 + 10, 400 + 2 * 220 + 90)
-    assert find_standstill(navigated_boot(gait, 850).anew(), swing, STEP_S) == 0
+    assert find_standstill(navigated_boot(gait, 850).to_level_again(), swing, STEP_S) == 0
 
 
 def test_the_height_of_the_standstill_counts_from_where_the_swing_was_taken_up() -> None:
     """So that the foothold is as high as the floor, not as the boot in mid air."""
     gait = walked([Stride()] * 10)
     at = 400 + 2 * 220 + 50
-    boot, some = navigated_boot(gait, at).anew(), samples(gait, at, at + 150)
+    boot, some = navigated_boot(gait, at).to_level_again(), samples(gait, at, at + 150)
     upto = find_standstill(boot, some, STEP_S)
     assert level_backwards(boot, some, upto, STEP_S)
     fallen_m = gait.place_m[at + upto - 10][2] - gait.place_m[at - 1][2]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from estimator.inertial.boot import GRAVITY_MPS2
-from estimator.inertial.levelling import ANYWHERE_RAD, veered_rad2
+from estimator.inertial.levelling import ANYWHERE_RAD, azimuth_variance_rad2
 from estimator.inertial.navigation import Navigation, navigate
 from estimator.inertial.rotations import level
 from estimator.inertial.samples import pieces
@@ -25,11 +25,11 @@ def test_a_tilt_that_is_not_known_veers_an_axis_by_its_elevations_tangent(elevat
         faced.append(np.arctan2(turned[1, 0] - turned[0, 1], turned[0, 0] + turned[1, 1]))
     expected = TILT_RAD * abs(np.tan(elevation))
     assert np.std(faced) == pytest.approx(expected, rel=0.15, abs=1e-3)
-    assert veered_rad2(float(np.sin(elevation)), TILT_RAD) == pytest.approx(expected**2)
+    assert azimuth_variance_rad2(float(np.sin(elevation)), TILT_RAD) == pytest.approx(expected**2)
 
 
 def test_an_axis_that_points_up_may_face_anything() -> None:
-    assert veered_rad2(1.0, TILT_RAD) == ANYWHERE_RAD**2
+    assert azimuth_variance_rad2(1.0, TILT_RAD) == ANYWHERE_RAD**2
 
 
 @pytest.mark.parametrize(("elevation_deg", "unsure_rad", "said"), [(0.0, 0.0, False), (88.0, 0.57, True)])

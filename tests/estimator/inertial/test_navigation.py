@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from estimator.inertial.dropped_samples import BRIDGED_S
 from estimator.inertial.levelling import ALIGN_S
-from estimator.inertial.navigation import EACH_S, JITTER_MOST_S, navigate
+from estimator.inertial.navigation import DISPLACEMENT_S, JITTER_MOST_S, navigate
 from estimator.inertial.record import navigation_of, record_of
 from estimator.inertial.samples import PIECE_S, pieces
 from estimator.inertial.short_gaps import CROSSED_S
@@ -28,7 +28,7 @@ def test_displacements_follow_each_other_and_lead_along_the_way() -> None:
     found, texts = navigated(GAIT.readings())
     assert texts == []
     assert all(after.from_t == before.t for before, after in pairwise(found))
-    assert all(d.from_t is not None and d.t - d.from_t == pytest.approx(EACH_S) for d in found)
+    assert all(d.from_t is not None and d.t - d.from_t == pytest.approx(DISPLACEMENT_S) for d in found)
     assert found[0].from_t == pytest.approx(50.0)
     for upto in range(10, len(found), 7):
         assert np.linalg.norm(total_m(found[:upto]) - true_m(GAIT, found[upto - 1].t)) < 0.3
@@ -104,7 +104,7 @@ def test_epochs_of_a_gateway_that_jitter_cost_no_samples(each: int, jitter_s: fl
     found, texts = navigated(late)
     assert texts == []
     assert np.linalg.norm(total_m(found) - GAIT.place_m[-1]) < 0.4
-    assert found[-1].t == pytest.approx(GAIT.t[-1], abs=EACH_S + JITTER_MOST_S)
+    assert found[-1].t == pytest.approx(GAIT.t[-1], abs=DISPLACEMENT_S + JITTER_MOST_S)
 
 
 def test_a_clock_that_runs_fast_is_followed() -> None:
@@ -112,7 +112,7 @@ def test_a_clock_that_runs_fast_is_followed() -> None:
     fast = [structs.replace(r, t=50.0 + (r.t - 50.0) * 200.0 / 201.0) for r in GAIT.readings()]
     found, _ = navigated(fast)
     assert np.linalg.norm(total_m(found) - GAIT.place_m[-1]) < 0.02 * 22.0
-    assert found[-1].t == pytest.approx(fast[-1].until_t, abs=EACH_S + JITTER_MOST_S)
+    assert found[-1].t == pytest.approx(fast[-1].until_t, abs=DISPLACEMENT_S + JITTER_MOST_S)
 
 
 @pytest.mark.parametrize("lost", [2, 5, 10, 18])

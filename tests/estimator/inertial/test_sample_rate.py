@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from estimator.inertial.sample_rate import REFUTED, RIGHT, SAID_AFTER_S, Clock, hears
+from estimator.inertial.sample_rate import REFUTED, RIGHT, SAID_AFTER_S, Clock, add_epoch
 
 RATE_HZ = 100.0
 
@@ -21,7 +21,7 @@ def heard(
         t = 1.7e9 + taken * pace / RATE_HZ + chance.uniform(-jitter_s, jitter_s)
         taken += count
         if chance.random() >= lost:
-            clock = hears(clock, t, RATE_HZ, overlaps=False)
+            clock = add_epoch(clock, t, RATE_HZ, overlaps=False)
             clock = clock._replace(counted=clock.counted + count)
     return clock
 
@@ -58,31 +58,31 @@ def test_a_clock_that_is_right_is_left_alone(each: int, jitter_s: float, lost: f
 
 @pytest.mark.parametrize("late_s", [-0.02, 0.04, 0.15])
 def test_a_single_reading_that_comes_late_or_early_tells_no_pace(late_s: float) -> None:
-    clock = hears(Clock.new(RATE_HZ), 0.0, RATE_HZ, overlaps=False)._replace(counted=200)
-    clock = hears(clock, 2.0 + late_s, RATE_HZ, overlaps=False)
+    clock = add_epoch(Clock.new(RATE_HZ), 0.0, RATE_HZ, overlaps=False)._replace(counted=200)
+    clock = add_epoch(clock, 2.0 + late_s, RATE_HZ, overlaps=False)
     assert clock.pace == 1.0
     assert np.exp(clock.paces[0, 0]) > REFUTED
 
 
 def test_what_overlaps_what_came_before_tells_no_pace() -> None:
-    clock = hears(Clock.new(RATE_HZ), 0.0, RATE_HZ, overlaps=False)
+    clock = add_epoch(Clock.new(RATE_HZ), 0.0, RATE_HZ, overlaps=False)
     for second in range(1, 30):
         # Each reading begins with the last tenth of a second of the one before.
-        clock = hears(clock._replace(counted=clock.counted + 100), second - 0.1, RATE_HZ, overlaps=True)
+        clock = add_epoch(clock._replace(counted=clock.counted + 100), second - 0.1, RATE_HZ, overlaps=True)
     assert clock.pace == 1.0
 
 
 def test_a_clock_that_warms_is_followed() -> None:
     clock, t = Clock.new(RATE_HZ), 0.0
     for second in range(1200):
-        clock = hears(clock, t, RATE_HZ, overlaps=False)._replace(counted=100)
+        clock = add_epoch(clock, t, RATE_HZ, overlaps=False)._replace(counted=100)
         pace = 1.04 - 0.01 * second / 1200
         t += pace
     assert clock.pace == pytest.approx(pace, abs=0.0005)
 
 
 def test_another_rate_that_is_told_begins_anew() -> None:
-    clock = hears(heard(1.04, 100), 1.7e9 + 3600.0, 200.0, overlaps=False)
+    clock = add_epoch(heard(1.04, 100), 1.7e9 + 3600.0, 200.0, overlaps=False)
     assert (clock.pace, clock.rate_hz) == (1.0, 200.0)
 
 

@@ -13,9 +13,9 @@ from estimator.inertial.strapdown import (
     FORGOTTEN_PER_RAD,
     RATE_WALK,
     VELOCITY_WALK,
-    correct,
     propagate,
     remove_errors,
+    update_state,
     without_biases,
     zero_velocity_update,
 )
@@ -93,7 +93,7 @@ def test_what_is_told_of_a_state_is_taken_in_as_by_bayes() -> None:
     """The information form: the inverse covariance gains what is told."""
     boot = unsure(np.random.default_rng(2))
     before, error = boot.covariance.copy(), np.zeros(ERRORS)
-    correct(boot.covariance, error, 7, 0.3, 0.1)
+    update_state(boot.covariance, error, 7, 0.3, 0.1)
     row = np.zeros(ERRORS)
     row[7] = 10.0
     information = np.linalg.inv(before) + np.outer(row, row)

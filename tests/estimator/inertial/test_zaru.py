@@ -12,7 +12,7 @@ from estimator.inertial.zaru import (
     SETTLES_RADPS,
     TOLD_AFTER_S,
     UNRESTED_RADPS,
-    believed,
+    bias_share,
 )
 from estimator.inertial.zupt_aided import advance
 from tests.estimator.inertial.boot_motion import BootMotion, Unit
@@ -65,11 +65,11 @@ def test_a_first_rest_that_ends_too_soon_says_so_and_is_believed_of_bad_units_on
 
 def test_of_trembling_rates_little_is_bias_and_of_steady_ones_all() -> None:
     turning = np.array([0.0, 0.005, 0.018])
-    trembling, left2 = believed(turning, 0.02**2)
+    trembling, left2 = bias_share(turning, 0.02**2)
     assert trembling < 0.3
     assert 0.005 < math.sqrt(left2) < 0.012
-    assert believed(turning, 0.0) == pytest.approx((1.0, 0.0))
-    assert believed(np.full(3, 0.05), 0.02**2)[0] > 0.7
+    assert bias_share(turning, 0.0) == pytest.approx((1.0, 0.0))
+    assert bias_share(np.full(3, 0.05), 0.02**2)[0] > 0.7
 
 
 def test_what_a_rest_has_told_already_is_nothing_new() -> None:
@@ -86,7 +86,7 @@ def test_after_the_rest_his_ways_are_straight() -> None:
 
 
 def test_a_boot_that_is_levelled_anew_keeps_what_its_rests_have_told() -> None:
-    boot = navigated_boot(biased(BootMotion().rests(3.0).walks(3).gait())).anew()
+    boot = navigated_boot(biased(BootMotion().rests(3.0).walks(3).gait())).to_level_again()
     np.testing.assert_allclose(boot.held.sensors[6:], BIAS, atol=2e-3)
     assert boot.gyros[BIAS_RADPS] < 1.1 * RESTED_RADPS
 
