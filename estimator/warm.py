@@ -44,20 +44,20 @@ from estimator.smoothing.changes.moved_nodes import test_place
 from estimator.smoothing.changes.track_fit import RangedTrack, fit_track
 from estimator.smoothing.keyframes.displacement_sums import Way, ways_of
 from estimator.smoothing.keyframes.ends import Ground, Nodes, Table, place_ends
-from estimator.smoothing.keyframes.walks import STATES, inverses, led_by, misfit, reckon, unit_motion
-from estimator.smoothing.learning.delay_scores import PROBES, follow_on, probe, through
+from estimator.smoothing.keyframes.walks import STATES, dead_reckon, inverses, misfit, reckon, unit_motion
+from estimator.smoothing.learning.delay_scores import PROBES, cross_information, lag_one_correlation, probe
 from estimator.smoothing.learning.unit_noise import noise_scores
-from estimator.smoothing.learning.wrong_steps import gains, unsure
+from estimator.smoothing.learning.wrong_steps import disturbance_covariance, gains
 from estimator.smoothing.problem.gauge_turn import moved_from, turn_between
-from estimator.smoothing.readings.curvature import add_bends
+from estimator.smoothing.readings.curvature import add_curvature
 from estimator.smoothing.readings.linearisation import (
     ANY,
     Readings,
-    add_unsure,
-    apart,
+    add_reckoning_noise,
     jacobians,
     residuals,
-    stretch,
+    scale_sigmas,
+    separations,
 )
 from estimator.smoothing.readings.obstructed import excess
 from estimator.smoothing.readings.stacked import scattered, sigmas
@@ -111,13 +111,13 @@ def _warm_chain() -> None:
     between, states = np.zeros((1, 12)), np.zeros((k, n))
     motion = unit_motion(between, one, states)
     misfit(motion)
-    doubt = unsure(motion, np.zeros((k, 1, n, n)), np.zeros((k - 1, 1, n, n)), 0, 0)
+    doubt = disturbance_covariance(motion, np.zeros((k, 1, n, n)), np.zeros((k - 1, 1, n, n)), 0, 0)
     noise_scores(motion, doubt)
     gains(motion, doubt)
     inverses(motion.noise)
     for wide_states in (states, np.zeros((k, 2 * n))[:, :n]):
         reckon(wide_states, between, one, 0)
-    led_by(states, np.zeros((k, 12))[:, :3], np.zeros((k, 12))[:, 3:6], np.ones(k))
+    dead_reckon(states, np.zeros((k, 12))[:, :3], np.zeros((k, 12))[:, 3:6], np.ones(k))
     add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)
     eliminate(0, k, diagonal, link, wide)
     take_off(0, k, wide, corner.copy(), rest.copy())
@@ -141,18 +141,18 @@ def _warm_chain() -> None:
     rows = found.rows
     readings = Readings(slab, one, one, pair, end, end, slab, one, slab, end, end, end, slab)
     residuals(readings, x)
-    add_unsure(jacobians(readings, x), place, place, place, place, np.ones(5))
-    apart(readings, x)
-    stretch(readings, x, no, True, no, one, one, one)
+    add_reckoning_noise(jacobians(readings, x), place, place, place, place, np.ones(5))
+    separations(readings, x)
+    scale_sigmas(readings, x, no, True, no, one, one, one)
     excess(slab, one, one, one)
     once_a_second(one, slab, one)
     for alike in (one, np.ones((2, 2))[:, 0]):
         costs_of(one, one, place, no, alike)
     short_costs(one, one)
     nowhere = np.full((1, 2), -1)
-    through(np.zeros((1, 2)), n, n, columns, slab, np.zeros((1, ANY)), one, nowhere, nowhere)
+    cross_information(np.zeros((1, 2)), n, n, columns, slab, np.zeros((1, ANY)), one, nowhere, nowhere)
     probe(np.zeros((n, PROBES)), n, n, columns, slab, np.zeros((1, ANY)), one)
-    follow_on(slab, one)
+    lag_one_correlation(slab, one)
     test_place(slab, heard, 0, 0, one, one, 0.0)
     fit_track(
         RangedTrack(place[:, :2].copy(), one, one, one, place),
@@ -169,7 +169,7 @@ def _warm_chain() -> None:
     turn_pairs(x, pair, place[0, :2], 0.0)
     change_pairs(np.eye(2), one, pair, turned_along(x, x, pair, place[0, :2]))
     pivot(np.eye(len(x)), x, Turning(pair, pair, pair[0]), place[0, :2])
-    add_bends(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
+    add_curvature(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
 
 
 def _warm_filter() -> None:

@@ -31,7 +31,7 @@ from estimator.smoothing.learning.wrong_steps import withdraw
 from estimator.smoothing.problem.newton import RESTING, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
-from estimator.smoothing.window import keep_up, look_again
+from estimator.smoothing.window import solve_for_headings, solve_if_due
 from estimator.smoothing.window_extent import spacing_s as usual_s
 
 SLACKS_M = (3.0, 1.0, 0.3, 0.1)
@@ -68,10 +68,10 @@ def first_pass(
         until_t = (math.floor(readings[start].until_t / TICK_S) + 1) * TICK_S
         end = bisect_left(readings, until_t, start, key=UNTIL_T)
         fold_tick(state, until_t, readings[start:end])
-        keep_up(state, until_t, RARER)
+        solve_if_due(state, until_t, RARER)
         start = end
     flush(state)
-    look_again(state)
+    solve_for_headings(state)
     state.keep_poses()
     return state
 
@@ -106,12 +106,12 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solution, list[Mode]]:
 
 
 def _solved(state: FusionState) -> tuple[Problem, Solution]:
-    """The whole incident solved with those radios believed that the state trusts."""
+    """The whole incident solved, with the antenna delays that the state knows."""
     withdraw(state)
     other = state.copy()
-    begun = [_begun(state)]
+    begun = [_initial_solution(state)]
     if reunite(other):
-        begun.append(_begun(other))
+        begun.append(_initial_solution(other))
     placed = max(len(problem.rows.sigma) for problem, _ in begun)
     problem, solved = min(begun, key=lambda one: _misfit(one[0], one[1], placed))
     state, rows = problem.layout.state, problem.rows
@@ -125,23 +125,23 @@ def _solved(state: FusionState) -> tuple[Problem, Solution]:
         solved = problem.solve(solved.x, iterations=1)
         learn(state, problem, solved, most, kinds=False)
     problem = _problem(state)
-    problem, solved = _settled(problem, problem.solve(solved.x), RESTING)
+    problem, solved = _with_moved_nodes(problem, problem.solve(solved.x), RESTING)
     # Last, for a node that was moved makes ranges differ like a wall.
     problem.rows.obstruct(solved.x)
     return problem, problem.solve(solved.x) if problem.rows.shift.any() else solved
 
 
-def _begun(state: FusionState) -> tuple[Problem, Solution]:
-    """A solution that is at rest enough to be learned from, with all nodes that were moved where they lie."""
+def _initial_solution(state: FusionState) -> tuple[Problem, Solution]:
+    """A first solution to learn noise from, with moved nodes, unseen climbs and unit mountings found."""
     problem = _problem(state)
     solved = problem.solve(problem.layout.start(), SLACKS_M, resting=LEARNING_RESTING)
     problem, solved = find_unseen_climb(problem, solved, _problem, LEARNING_RESTING)
     problem, solved, _ = likeliest_mounting(problem, solved, _problem, LEARNING_RESTING, -math.inf)
-    return _settled(problem, solved, LEARNING_RESTING)
+    return _with_moved_nodes(problem, solved, LEARNING_RESTING)
 
 
 def _misfit(problem: Problem, solved: Solution, most: int) -> float:
-    """How much worse a solution is than one that fits all its readings, in log likelihood.
+    """Cost of a solution over that of a perfect fit, in log likelihood, comparable between placements.
 
     Each place that it needs is to be worth what it is worth to find one. Readings to a node that it has no
     place for cost what readings usually do: leaving them out is no way to fit them.
@@ -157,8 +157,8 @@ def _misfit(problem: Problem, solved: Solution, most: int) -> float:
     return float(solved.cost - at_best.sum() + unplaced + GAIN * len(problem.layout.stands))
 
 
-def _settled(problem: Problem, solved: Solution, resting: float) -> tuple[Problem, Solution]:
-    """The solution with all nodes that were moved where they lie: they begin anew in its state.
+def _with_moved_nodes(problem: Problem, solved: Solution, resting: float) -> tuple[Problem, Solution]:
+    """Find moved nodes and solve again with each at its new place, until none is found.
 
     Args:
         problem: of the whole incident.
@@ -169,7 +169,7 @@ def _settled(problem: Problem, solved: Solution, resting: float) -> tuple[Proble
         moves, _ = moved_nodes(problem, solved, math.inf)
         if not moves:
             break
-        _begin_elsewhere(problem, solved, moves)
+        _branch_moved(problem, solved, moves)
         problem = _problem(problem.layout.state)
         solved = problem.solve(problem.layout.start(), SLACKS_M, resting=resting)
     return problem, solved
@@ -188,8 +188,8 @@ def _layout(state: FusionState) -> Layout:
     return Layout(state, since_t, spacing_s(state, since_t, state.newest_t))
 
 
-def _begin_elsewhere(problem: Problem, solved: Solution, moves: Sequence[MovedNode]) -> None:
-    """Nodes that were moved begin anew, beside the others as they are in the solution."""
+def _branch_moved(problem: Problem, solved: Solution, moves: Sequence[MovedNode]) -> None:
+    """Branch moved nodes: each begins at its new place, all others as they are in the solution."""
     layout, state = problem.layout, problem.layout.state
     hand_back(state, layout, solved, solved.chain.remainder(layout.length - 1).matrix)
     keep_keyframes(state, layout, solved.x)

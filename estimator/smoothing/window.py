@@ -74,8 +74,8 @@ RESTING = 0.1
 """A window that gains less in log likelihood is solved again soon anyway."""
 
 
-def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
-    """After a tick that ends at `t`: solve the window again where it is due.
+def solve_if_due(state: FusionState, t: float, rarer: float = 1.0) -> None:
+    """Solve the window again after a tick if it is due: by time, by how far it has bent, or by suspicion.
 
     Args:
         state: the fusion, changed in place.
@@ -108,7 +108,7 @@ def keep_up(state: FusionState, t: float, rarer: float = 1.0) -> None:
 
 
 def solve_now(state: FusionState, t: float) -> None:
-    """After a tick that ends at `t`, solve the window again, due or not; before anybody began, nothing.
+    """Solve the window again after a tick, due or not; nothing where nobody has begun yet.
 
     Args:
         state: the fusion, changed in place.
@@ -125,8 +125,8 @@ def solve_now(state: FusionState, t: float) -> None:
         state.suspected = True
 
 
-def look_again(state: FusionState) -> None:
-    """After the last tick: where a unit may still face anything, ask it of all that has been heard."""
+def solve_for_headings(state: FusionState) -> None:
+    """Solve once more after the last tick if a unit's heading is still open."""
     if any(node.turned for node in state.nodes.values()) and state.begun_t is not None:
         refresh(state, state.refreshed_t)
 
@@ -199,7 +199,7 @@ def _problem(state: FusionState, since: float) -> Problem:
 
 
 def _solved(problem: Problem, x: Array, solved_t: float) -> Solution:
-    """The solution from where the filter has led to, or from where the units' own ways have.
+    """The likelier solution of two starts: the filter's estimate, and the units' dead reckoning.
 
     The filter may have turned the map, of which what was solved before knows nothing: the kink between the
     two can bend everything, and turn the map further with each solution.
@@ -242,7 +242,7 @@ def _tell_changes(state: FusionState, problem: Problem, solved: Solution) -> Non
 
 
 def _judge_turns(problem: Problem, solved: Solution, found: Array, asked: Collection[int]) -> None:
-    """A unit whose heading has been found is not tried all round any more, unless another one fits again."""
+    """Mark units whose heading is found, so that turns of it are no longer tried; and those open again."""
     layout = problem.layout
     for i, walk in enumerate(layout.walks):
         node = layout.state.life(walk.number)
@@ -256,7 +256,7 @@ def _judge_turns(problem: Problem, solved: Solution, found: Array, asked: Collec
 
 
 def _in_line(problem: Problem, solved: Solution, index: int) -> bool:
-    """Whether a unit has led along the lines to all radios that tell of it: its sides part later."""
+    """Whether a unit's way lies along the lines to all its radios: its mirror image is the same so far."""
     layout = problem.layout
     walk, way_m = layout.walks[index], layout.states(solved.x, index)[:, :2]
     sides = to_other_sides(heard_by(problem, solved, walk), way_m, walk, reports_from(layout, index))

@@ -15,7 +15,7 @@ from estimator.smoothing.images.likeliest_image import likeliest_image
 from estimator.smoothing.results.advice import advise
 from estimator.smoothing.results.calibration_doubt import doubt_delays, doubt_scales
 from estimator.smoothing.results.evidence import explain
-from estimator.smoothing.results.heading_arcs import swing
+from estimator.smoothing.results.heading_arcs import widen_by_arcs
 from estimator.smoothing.results.tracks import tracks
 from estimator.smoothing.whole import first_pass, solve_whole
 from estimator.trackers.base import TrackerSettings
@@ -43,7 +43,7 @@ class BatchSmoother:
         problem, solved, modes, *_ = likeliest_image(problem, solved, WHOLE)
         solved.chain.solve()
         covariances = solved.chain.covariances()
-        swing(problem.layout, solved, covariances)
+        widen_by_arcs(problem.layout, solved, covariances)
         doubt_scales(problem.layout, solved, covariances)
         doubt_delays(problem, solved, covariances)
         widen(problem.layout, solved.x, [*modes, *others], covariances)

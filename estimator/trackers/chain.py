@@ -10,7 +10,7 @@ from estimator.fusion.canonical_order import end_of_tick, place_of
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.tick import fold_tick
 from estimator.inertial.samples import AnyFolded
-from estimator.smoothing.window import JOLT_M, keep_up, solve_now
+from estimator.smoothing.window import JOLT_M, solve_if_due, solve_now
 
 AGES_S, SPACINGS_S = (4.0, 16.0), (0.0, 4.0, 16.0)
 """Up to each age, and beyond the last, checkpoints are kept so far apart: a reading late by x is folded anew
@@ -71,7 +71,7 @@ class Chain:
             after = self.state.copy()
             fold_tick(after, end_of_tick(tick), sorted(readings[tick], key=place_of))
             after.bent_m = max(after.bent_m, found_m(self.state, after))
-            keep_up(after, end_of_tick(tick))
+            solve_if_due(after, end_of_tick(tick))
             notices[tick] = list(after.notices)
             self.checkpoints.append((tick, after))
             if len(self.checkpoints) > MOST:

@@ -173,13 +173,13 @@ class Chain:
         carried, rest = [], corner.copy()
         for strand in self.strands:
             y, own = right[:, strand.group.columns], np.zeros((len(strand.group.lasting), corner.shape[1]))
-            strand.forth(y, own)
+            strand.carry(y, own)
             rest[strand.group.lasting] += own
             carried.append(y)
         fixed: Array = inverse(self._cholesky) @ rest
         found = np.zeros(right.shape)
         for strand, y in zip(self.strands, carried, strict=True):
-            strand.back(y, fixed[strand.group.lasting])
+            strand.carry_back(y, fixed[strand.group.lasting])
             found[:, strand.group.columns] = y
         return found, fixed
 
@@ -194,7 +194,7 @@ class Chain:
         pulled, (_, gradient) = np.zeros(corner.shape[1]), self._corner()
         for strand in self.strands:
             y, own = right[:, strand.group.columns], np.zeros((len(strand.group.lasting), corner.shape[1]))
-            strand.forth(y, own)
+            strand.carry(y, own)
             rest[strand.group.lasting] += own
             flat = y.reshape(-1, corner.shape[1])
             found += flat.T @ flat

@@ -17,14 +17,14 @@ from estimator.smoothing.chain.groups import Group, GroupedReadings
 from estimator.smoothing.keyframes.walks import Motion
 
 
-class Way(NamedTuple):
-    """How one of a group's walks goes.
+class WalkMotion(NamedTuple):
+    """The linearised motion of one of a group's walks.
 
     Attributes:
         block: which of the group's walks it is.
         first: its first keyframe.
         last: its last one.
-        motion: of its steps.
+        motion: between its keyframes.
     """
 
     block: int
@@ -85,13 +85,13 @@ class Strand:
             blocks = self.diagonal, self.wide, self.corner, self.corner_gradient
             scatter_rows(chosen, placed.slab, placed.columns, jacobian, information, residual, *blocks)
 
-    def go(self, ways: Sequence[Way]) -> None:
-        """Add how its walks go.
+    def add_motions(self, ways: Sequence[WalkMotion]) -> None:
+        """Add the motion of its walks between keyframes.
 
         A keyframe at which a walk is not has its numbers for themselves: nothing depends on them.
 
         Args:
-            ways: of its walks; the last keyframe of one may lie behind the chain's.
+            ways: the motions; the last keyframe of one may lie behind the chain's.
         """
         length, size = len(self.diagonal), self.link.shape[2]
         for block, first, last, motion in ways:
@@ -149,13 +149,13 @@ class Strand:
             substitute(self.diagonal, self.link, self.wide, fixed, steps)
         return steps
 
-    def forth(self, y: Array, rest: Array) -> None:
+    def carry(self, y: Array, rest: Array) -> None:
         """Carry right sides to its end: `y` of the keyframes, k × n × c, and `rest` of the border, s × c."""
         if y.shape[1]:
             carry(self.diagonal, self.link, self.wide, y, rest)
 
-    def back(self, y: Array, fixed: Array) -> None:
-        """Answers in the place of what `forth` left in `y`, for those of the border, s × c."""
+    def carry_back(self, y: Array, fixed: Array) -> None:
+        """Answers in the place of what `carry` left in `y`, for those of the border, s × c."""
         if y.shape[1]:
             carry_back(self.diagonal, self.link, self.wide, y, fixed)
 

@@ -197,7 +197,7 @@ def sums_between(begin_t: float, marks: Array, sums: Array, since: Array, until:
 
 
 @njit(cache=True)
-def lay_out(
+def set_sums_of(
     begin_t: float,
     marks: Array,
     sums: Array,
@@ -207,7 +207,7 @@ def lay_out(
     until: Array,
     to: SummedEnds,
 ) -> None:
-    """Put what lies between epochs where it belongs, of those of m ends that are one node's.
+    """Set the displacement sums of those of m ends that are one node's: between keyframe and epoch.
 
     Args:
         begin_t: epoch at which its way begins (s).

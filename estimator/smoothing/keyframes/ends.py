@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.smoothing.keyframes.displacement_sums import SummedEnds, Ways, lay_out, ways_of
+from estimator.smoothing.keyframes.displacement_sums import SummedEnds, Ways, set_sums_of, ways_of
 from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.keyframes.walks import STATES, lead
+from estimator.smoothing.keyframes.walks import STATES, rotate_displacement
 
 FIXED, STANDING, UNIT, FREE, UNPLACED = range(5)
 
@@ -118,7 +118,7 @@ def place_end(ends: Table, i: int, x: Array, place: Array, turned: Array) -> Non
         place[c] = x[at[c], 0] if kind in (STANDING, UNIT, FREE) else ends.fixed_m[i, c]
     if kind == UNIT:
         cosine, sine, bias, scale = x[at[3], 1], x[at[3], 2], x[at[4], 0], 1.0 + x[at[5], 0]
-        led = lead(cosine, sine, bias, scale, ends.delta_m[i], ends.moment[i])
+        led = rotate_displacement(cosine, sine, bias, scale, ends.delta_m[i], ends.moment[i])
         place[0] += led.east
         place[1] += led.north
         place[2] += led.up
@@ -164,7 +164,7 @@ class Supports(NamedTuple):
 
 
 @njit(cache=True)
-def stand(
+def supports_of(
     nodes: Nodes,
     numbers: Integers,
     t: Array,
@@ -173,7 +173,7 @@ def stand(
     times: Array,
     lives: Integers,
 ) -> Supports:
-    """Where ends of readings belong in the unknowns of a window.
+    """For each end of a reading: the keyframe or border numbers that its place depends on.
 
     Args:
         nodes: what each node is.
@@ -261,21 +261,21 @@ def ends_of(ground: Ground, numbers: Integers, t: Array, nearest: NDArray[np.boo
         ground: of the window.
         numbers: the node of each end, m.
         t: epochs, m (s).
-        nearest: see `stand`, m.
+        nearest: see `supports_of`, m.
     """
     m, ways = len(numbers), ground.ways
-    stood = stand(ground.nodes, numbers, t, nearest, ground.grid, ground.times, ground.spans)
+    stood = supports_of(ground.nodes, numbers, t, nearest, ground.grid, ground.times, ground.spans)
     laid = SummedEnds(np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)))
     for w in range(len(ways.numbers) if m else 0):
         own = slice(ways.firsts[w], ways.firsts[w + 1])
         told = ways.begin_t[w], ways.marks[own], ways.sums[own]
-        lay_out(*told, ways.numbers[w], numbers, stood.since_t, t, laid)
+        set_sums_of(*told, ways.numbers[w], numbers, stood.since_t, t, laid)
     table = Table(stood.kind, stood.flat, stood.fixed_m, laid.delta_m, laid.moment, t - stood.since_t)
     return Ends(stood, laid.unsure_m2, table)
 
 
 @njit(cache=True)
-def taken(ends: Ends, chosen: NDArray[np.bool_]) -> Ends:
+def selected_ends(ends: Ends, chosen: NDArray[np.bool_]) -> Ends:
     """Some of m ends.
 
     Args:

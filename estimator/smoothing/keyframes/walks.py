@@ -34,8 +34,8 @@ class Motion(NamedTuple):
     information: Array
 
 
-class Dependence(NamedTuple):
-    """Where a displacement leads to, less where from (m), and its derivatives by heading, bias and scale."""
+class DisplacementJacobian(NamedTuple):
+    """A displacement in the map's frame (m), and its derivatives by heading, bias and scale."""
 
     east: float
     north: float
@@ -49,14 +49,16 @@ class Dependence(NamedTuple):
 
 
 @njit(cache=True)
-def lead(cosine: float, sine: float, bias: float, scale: float, delta_m: Array, moment: Array) -> Dependence:
-    """What is s Rz(ψ) (Δ + β J M) of one displacement Δ (3) with its first moment M (3), and its slopes.
+def rotate_displacement(
+    cosine: float, sine: float, bias: float, scale: float, delta_m: Array, moment: Array
+) -> DisplacementJacobian:
+    """S Rz(ψ) (Δ + β J M) of one displacement Δ (3) with its first moment M (3), and its derivatives.
 
     Heights are not scaled: see `measurements.displacement.move`.
     """
     bent_e, bent_n = delta_m[0] - bias * moment[1], delta_m[1] + bias * moment[0]
     east, north = cosine * bent_e - sine * bent_n, sine * bent_e + cosine * bent_n
-    return Dependence(
+    return DisplacementJacobian(
         scale * east,
         scale * north,
         delta_m[2],
@@ -70,13 +72,13 @@ def lead(cosine: float, sine: float, bias: float, scale: float, delta_m: Array, 
 
 
 @njit(cache=True)
-def led_by(before: Array, delta_m: Array, moment: Array, durations_s: Array) -> tuple[Array, Array]:
-    """Where displacements lead from states (m × 6), and the derivatives by these states, m × 6 × 6."""
+def dead_reckon(before: Array, delta_m: Array, moment: Array, durations_s: Array) -> tuple[Array, Array]:
+    """States after displacements from states (m × 6), and their derivatives by these, m × 6 × 6."""
     count = len(before)
     after, transition = before.copy(), np.zeros((count, STATES, STATES))
     for i in range(count):
         cosine, sine = np.cos(before[i, 3]), np.sin(before[i, 3])
-        led = lead(cosine, sine, before[i, 4], 1.0 + before[i, 5], delta_m[i], moment[i])
+        led = rotate_displacement(cosine, sine, before[i, 4], 1.0 + before[i, 5], delta_m[i], moment[i])
         after[i, 0] += led.east
         after[i, 1] += led.north
         after[i, 2] += led.up
@@ -102,7 +104,9 @@ def reckon(states: Array, between: Array, durations_s: Array, known: int) -> Non
     """
     for k in range(known, len(durations_s)):
         cosine, sine = np.cos(states[k, 3]), np.sin(states[k, 3])
-        led = lead(cosine, sine, states[k, 4], 1.0 + states[k, 5], between[k, :3], between[k, 3:6])
+        led = rotate_displacement(
+            cosine, sine, states[k, 4], 1.0 + states[k, 5], between[k, :3], between[k, 3:6]
+        )
         states[k + 1] = states[k]
         states[k + 1, 0] += led.east
         states[k + 1, 1] += led.north
@@ -146,7 +150,7 @@ def unit_motion(between: Array, durations_s: Array, states: Array) -> Motion:
         states: position, ψ, β, s − 1 at k + 1 keyframes.
     """
     count = len(durations_s)
-    led, transition = led_by(states[:count], between[:, :3], between[:, 3:6], durations_s)
+    led, transition = dead_reckon(states[:count], between[:, :3], between[:, 3:6], durations_s)
     noise, information = np.zeros((count, STATES, STATES)), np.zeros((count, STATES, STATES))
     residual = np.empty((count, STATES))
     for i in range(count):
@@ -162,15 +166,15 @@ def unit_motion(between: Array, durations_s: Array, states: Array) -> Motion:
             transition[i, r, 5] = (states[i + 1, r] - states[i, r]) / scale
         for c in range(STATES):
             information[i, c, c] = 1.0 / noise[i, c, c]
-        veer(transition[i, 0, 3], transition[i, 1, 3], noise[i], information[i])
+        add_heading_walk(transition[i, 0, 3], transition[i, 1, 3], noise[i], information[i])
         transition[i, 0, 3] = states[i, 1] - states[i + 1, 1]
         transition[i, 1, 3] = states[i + 1, 0] - states[i, 0]
     return Motion(transition, noise, residual, information)
 
 
 @njit(cache=True)
-def veer(lever_e: float, lever_n: float, noise: Array, information: Array) -> None:
-    """Add what a heading's random walk on the way does to the end of a step, in closed form.
+def add_heading_walk(lever_e: float, lever_n: float, noise: Array, information: Array) -> None:
+    """Add the noise that a heading's random walk gives the end of a step, in closed form.
 
     Given where the heading ends, its walk still moves the end of a lever l sideways by v l² / 12: with the
     step's own variances that is a sum, so that nothing cancels.
@@ -201,7 +205,7 @@ def veer(lever_e: float, lever_n: float, noise: Array, information: Array) -> No
 
 
 class Free(NamedTuple):
-    """What is the same of a free motion wherever it is: F, Q and Q⁻¹ of each step, k × 6 × 6."""
+    """A free motion, which is linear: F, Q and Q⁻¹ of each step, k × 6 × 6."""
 
     transition: Array
     noise: Array

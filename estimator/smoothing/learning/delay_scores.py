@@ -8,8 +8,10 @@ from estimator.graph.dense import Array
 
 
 @njit(cache=True)
-def halves(carried: Integers, weight: Array, residual: Array, radios: int) -> tuple[Integers, Array, Array]:
-    """In which half of the time ranges tell of each radio, and what they then say of its bias.
+def scores_by_half(
+    carried: Integers, weight: Array, residual: Array, radios: int
+) -> tuple[Integers, Array, Array]:
+    """Score and information of each radio's bias, in either half of its ranges by information.
 
     Args:
         carried: radios at both ends of each, m × 2, in order of epoch; −1: one that is not asked.
@@ -40,7 +42,7 @@ def halves(carried: Integers, weight: Array, residual: Array, radios: int) -> tu
 
 
 @njit(cache=True)
-def through(
+def cross_information(
     right: Array,
     width: int,
     size: int,
@@ -51,7 +53,7 @@ def through(
     half: Integers,
     place: Integers,
 ) -> None:
-    """What biases have in common with the other unknowns, Σ w J, by ranges.
+    """Cross information Σ w J between biases and the other unknowns of a window, by ranges.
 
     Args:
         right: n × 2 c, of each of c radios in both halves; changed.
@@ -61,7 +63,7 @@ def through(
         slab: its keyframe, m.
         jacobian: derivatives, m × 14.
         weight: P⁻¹, m.
-        half: see `halves`.
+        half: see `scores_by_half`.
         place: which of the radios are at both ends, m × 2; −1: none.
     """
     for r in range(len(columns)):
@@ -92,7 +94,7 @@ def probe(
     jacobian: Array,
     root: Array,
 ) -> None:
-    """Rows added up with signs, Jᵀ √w s: those of as many successive rows as there are probes are orthogonal.
+    """Right sides Jᵀ √w s for a trace; the signs s of as many successive rows as probes are orthogonal.
 
     Args:
         right: n × `PROBES`, changed.
@@ -119,8 +121,8 @@ def probe(
 
 
 @njit(cache=True)
-def follow_on(link: Integers, residual: Array) -> float:
-    """How alike successive residuals of links are, 0 to 1.
+def lag_one_correlation(link: Integers, residual: Array) -> float:
+    """Correlation of successive residuals of links, 0 to 1.
 
     Args:
         link: of each, m, in order of epoch; −1: none.

@@ -20,7 +20,7 @@ from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.robust import mixture_cost
-from estimator.smoothing.learning.radios import Delay, RangesByRadio, common, told_by
+from estimator.smoothing.learning.radios import Delay, RangesByRadio, bias_columns, ranges_by_radio
 from estimator.smoothing.learning.suspected_delays import suspicions
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
@@ -55,9 +55,9 @@ def doubt_delays(state: FusionState, problem: Problem, solved: Solution) -> None
     span_s = float(problem.layout.grid[-1] - problem.layout.grid[0])
     if state.newest_t < state.delays_t + min(AGAIN * span_s, LONGEST_S):
         return
-    told = told_by(problem, solved)
-    pulling = pulling_of(problem, solved, told)
-    found = _likeliest(pulling, _unbelieved(problem, solved, told))
+    told = ranges_by_radio(problem, solved)
+    pulling = scored_delays(problem, solved, told)
+    found = _likeliest(pulling, _rejected_radios(problem, solved, told))
     if not found or found[0].odds < 0.0:
         state.delays_t = state.newest_t
     off = doubted(found)
@@ -115,8 +115,8 @@ def delays(problem: Problem, solved: Solution) -> list[Delay]:
         problem: of a window, or of the whole incident.
         solved: its solution, whose chain has been reduced.
     """
-    told = told_by(problem, solved)
-    return _likeliest(pulling_of(problem, solved, told), _unbelieved(problem, solved, told))
+    told = ranges_by_radio(problem, solved)
+    return _likeliest(scored_delays(problem, solved, told), _rejected_radios(problem, solved, told))
 
 
 def _likeliest(pulling: list[Delay], unbelieved: list[Delay]) -> list[Delay]:
@@ -124,8 +124,8 @@ def _likeliest(pulling: list[Delay], unbelieved: list[Delay]) -> list[Delay]:
     return sorted(found.values(), key=lambda one: -one.odds)
 
 
-def pulling_of(problem: Problem, solved: Solution, told: RangesByRadio) -> list[Delay]:
-    """Radios that have bent the map: by their scores, and what of them the map has taken up."""
+def scored_delays(problem: Problem, solved: Solution, told: RangesByRadio) -> list[Delay]:
+    """Delays of the radios with the largest residuals, by the score of a bias less what the map takes up."""
     layout, total = problem.layout, told.told.sum(axis=1)
     size = layout.length * layout.width
     suspicion = told.score.sum(axis=1) ** 2 / np.maximum(total, NOTHING)
@@ -133,20 +133,20 @@ def pulling_of(problem: Problem, solved: Solution, told: RangesByRadio) -> list[
     asked = order[:ASKED] + [r for r in order[ASKED:] if nodes[told.radios[r][1]].moving]
     if not asked:
         return []
-    right = common(problem, solved, told, np.array(asked))
+    right = bias_columns(problem, solved, told, np.array(asked))
     of_keyframes = right[:size].reshape(layout.length, layout.width, -1)
     taken = solved.chain.explained(of_keyframes, right[size:])
-    worth, found = _worth(problem, solved, told), []
+    worth, found = _effective_share(problem, solved, told), []
     for i, radio in enumerate(asked):
         own = slice(2 * i, 2 * i + 2)
         left = np.diag(told.told[radio]) - taken.information[own, own]
         score = told.score[radio] - taken.score[own]
-        found.append(judged(told.radios[radio], worth[radio] * score, worth[radio] * left))
+        found.append(delay_of(told.radios[radio], worth[radio] * score, worth[radio] * left))
     return [one for one in found if one is not None]
 
 
-def _worth(problem: Problem, solved: Solution, told: RangesByRadio) -> Array:
-    """What the ranges of each radio are worth, of what they would be did each err by itself.
+def _effective_share(problem: Problem, solved: Solution, told: RangesByRadio) -> Array:
+    """Information of each radio's ranges, as a share of what independent errors would have; radios.
 
     What lasts while nobody moves the estimate follows, and no residual shows it: k ranges of variance w that
     share one of c are worth k / (w + k c).
@@ -164,8 +164,8 @@ def _worth(problem: Problem, solved: Solution, told: RangesByRadio) -> Array:
     return np.asarray(single / np.maximum(together, NOTHING))
 
 
-def judged(radio: Radio, score: Array, left: Array) -> Delay | None:
-    """How likely a radio is to be off; None where it is no antenna delay that it is off by.
+def delay_of(radio: Radio, score: Array, left: Array) -> Delay | None:
+    """The delay of a radio by the score of its bias; None where that is no antenna delay.
 
     Args:
         radio: the radio.
@@ -180,7 +180,7 @@ def judged(radio: Radio, score: Array, left: Array) -> Delay | None:
     constant = gain >= CONSTANT * apart
     if (not constant and apart - gain > NOISE) or abs(bias_m) > FARTHEST * math.sqrt(wide):
         return None
-    odds = gain - 0.5 * pulled**2 / known_usual - _rarer(information, usual, wide)
+    odds = gain - 0.5 * pulled**2 / known_usual - _occam_factor(information, usual, wide)
     share = 1.0 / (1.0 + math.exp(-max(odds + RARE, -700.0)))
     square = share * (bias_m**2 + 1.0 / known)
     square += (1.0 - share) * ((pulled / known_usual) ** 2 + 1.0 / known_usual)
@@ -188,8 +188,8 @@ def judged(radio: Radio, score: Array, left: Array) -> Delay | None:
     return Delay(radio, odds, bias_m, constant, max(square - usual, 0.0))
 
 
-def _unbelieved(problem: Problem, solved: Solution, told: RangesByRadio) -> list[Delay]:
-    """Radios most of whose ranges are outliers, and would be none if all of them were off by the same.
+def _rejected_radios(problem: Problem, solved: Solution, told: RangesByRadio) -> list[Delay]:
+    """Delays of radios most of whose ranges are outliers, which one constant bias would make good.
 
     They bend nothing: their scores are nil, and what is to be gained is seen with the map as it is.
     """
@@ -211,23 +211,23 @@ def _unbelieved(problem: Problem, solved: Solution, told: RangesByRadio) -> list
         constant = parts.min() > (1.0 - CONSTANT) * parts.mean()
         if constant and abs(bias_m) < FARTHEST * math.sqrt(wide):
             odds = float(parts.sum()) - 0.5 * bias_m**2 / wide
-            odds -= _rarer(float((sigma**-2.0).sum()), usual, wide)
+            odds -= _occam_factor(float((sigma**-2.0).sum()), usual, wide)
             # Its ranges bend nothing: no place is off by what they are off by.
             found.append(Delay(radio, odds, bias_m, constant, 0.0))
     return found
 
 
 def _variances_m2(radio: Radio) -> tuple[float, float]:
-    """Of the bias of a radio that is like all others of its technology, and of one that is off."""
+    """Prior variances of the bias of a calibrated radio of a technology, and of one with a delay (m²)."""
     usual = bias_sigma_m(radio[0]) ** 2
     return usual, usual + physics.DELAY_SIGMA_M**2
 
 
 def _own_m2(technology: str) -> float:
-    """Variance of what a radio that is like all others of a technology is off by, by itself (m²)."""
+    """Variance of the part of a calibrated radio's bias that is its own, not its technology's (m²)."""
     return (physics.RADIO_BIAS * bias_sigma_m(technology)) ** 2
 
 
-def _rarer(information: float, usual: float, wide: float) -> float:
-    """How much rarer any one bias is where it may be anything."""
+def _occam_factor(information: float, usual: float, wide: float) -> float:
+    """Occam factor of the wide prior of a bias against the usual one, in log likelihood."""
     return 0.5 * math.log((1.0 + wide * information) / (1.0 + usual * information))

@@ -8,7 +8,7 @@ from estimator.fusion.learned.delays import Radio, reported_as
 from estimator.fusion.memory.ledger import RANGE
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array, Indices
-from estimator.smoothing.learning.delay_scores import halves, through
+from estimator.smoothing.learning.delay_scores import cross_information, scores_by_half
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 
@@ -51,8 +51,8 @@ class RangesByRadio(NamedTuple):
     told: Array
 
 
-def told_by(problem: Problem, solved: Solution) -> RangesByRadio:
-    """The ranges of a solution, by the radios at their ends."""
+def ranges_by_radio(problem: Problem, solved: Solution) -> RangesByRadio:
+    """Group a solution's ranges by the radios at their ends, but for those known to have a delay."""
     rows, state = problem.rows, problem.layout.state
     ranges, nodes = np.flatnonzero(rows.pairs[:, 1] == RANGE), len(state.owners)
     keys = rows.pairs[ranges, 6:7].astype(np.intp) * nodes + rows.pairs[ranges, 2:4].astype(np.intp)
@@ -65,11 +65,11 @@ def told_by(problem: Problem, solved: Solution) -> RangesByRadio:
             place[key] = each.setdefault(radio, len(each))
     weighted, carried = solved.weighted, place[keys]
     weight, residual = weighted.information[ranges], weighted.residual[ranges]
-    return RangesByRadio(list(each), ranges, carried, *halves(carried, weight, residual, len(each)))
+    return RangesByRadio(list(each), ranges, carried, *scores_by_half(carried, weight, residual, len(each)))
 
 
-def common(problem: Problem, solved: Solution, told: RangesByRadio, radios: Indices) -> Array:
-    """What the unknowns have in common with biases of radios in both halves of the time, n × 2 c.
+def bias_columns(problem: Problem, solved: Solution, told: RangesByRadio, radios: Indices) -> Array:
+    """Cross information of all unknowns with the biases of radios in both halves of the time, n × 2 c.
 
     Args:
         problem: of a window, or of the whole incident.
@@ -83,5 +83,5 @@ def common(problem: Problem, solved: Solution, told: RangesByRadio, radios: Indi
     right = np.zeros((size + layout.border, 2 * len(radios)))
     rows = problem.rows.columns[ranges], problem.rows.slab[ranges], solved.linear.jacobian[ranges]
     weight = solved.weighted.information[ranges]
-    through(right, layout.width, size, *rows, weight, told.half, place[told.carried])
+    cross_information(right, layout.width, size, *rows, weight, told.half, place[told.carried])
     return right

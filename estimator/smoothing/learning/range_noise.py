@@ -17,7 +17,7 @@ from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array, Indices
-from estimator.smoothing.learning.delay_scores import PROBES, follow_on, probe
+from estimator.smoothing.learning.delay_scores import PROBES, lag_one_correlation, probe
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 
@@ -78,15 +78,15 @@ def _factor(problem: Problem, solved: Solution, at: Indices, least: float) -> fl
     squares, count = float(((off / rows.nominal[at]) ** 2).sum()) + prior, float((good * own).sum())
     if squares >= (count + prior) * least**2:
         return least
-    alike = follow_on(rows.pairs[at, 9].astype(np.int64), off)
+    alike = lag_one_correlation(rows.pairs[at, 9].astype(np.int64), off)
     # So many independent readings are worth as much as these whose errors follow on from each other.
     worth = count * (1.0 - alike) / (1.0 + alike)
-    left = max(1.0 - taken(problem, solved, at, np.sqrt(good * own) / sigma) / max(worth, 1.0), 0.0)
+    left = max(1.0 - explained_count(problem, solved, at, np.sqrt(good * own) / sigma) / max(worth, 1.0), 0.0)
     return math.sqrt(squares / (count * left + prior))
 
 
-def taken(problem: Problem, solved: Solution, at: Indices, root: Array) -> float:
-    """How many of some readings the unknowns take up, Σ w J L⁻¹ Jᵀ, by probing (Hutchinson 1990).
+def explained_count(problem: Problem, solved: Solution, at: Indices, root: Array) -> float:
+    """Degrees of freedom that the unknowns take of some readings, Σ w J L⁻¹ Jᵀ (Hutchinson 1990).
 
     Args:
         problem: of the solution.

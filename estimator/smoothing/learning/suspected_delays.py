@@ -13,7 +13,7 @@ import numpy as np
 
 from estimator.fusion.learned.delays import Radio, Suspicion, reported_as
 from estimator.graph.dense import Array
-from estimator.smoothing.learning.radios import Delay, RangesByRadio, common
+from estimator.smoothing.learning.radios import Delay, RangesByRadio, bias_columns
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 
@@ -52,7 +52,7 @@ def suspects(
         return
     layout = problem.layout
     size = layout.length * layout.width
-    right = common(problem, solved, told, np.array([number[radio] for radio in off_m2]))
+    right = bias_columns(problem, solved, told, np.array([number[radio] for radio in off_m2]))
     right = right[:, ::2] + right[:, 1::2]
     moved, fixed = solved.chain.response(right[:size].reshape(layout.length, layout.width, -1), right[size:])
     moved = moved.reshape(size, -1)

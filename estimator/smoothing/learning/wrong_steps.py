@@ -44,7 +44,7 @@ class Slip(NamedTuple):
 
 
 @njit(cache=True)
-def unsure(motion: Motion, found: Array, ahead: Array, walk: int, first: int) -> Array:
+def disturbance_covariance(motion: Motion, found: Array, ahead: Array, walk: int, first: int) -> Array:
     """V: covariance of the smoothed disturbances w of a walk's steps, k × 6 × 6.
 
     Args:
@@ -91,7 +91,7 @@ def doubts_of(problem: Problem, solved: Solution, found: Array, ahead: Array) ->
         ahead: of each with itself at the next keyframe, (k − 1) × walks × 6 × 6.
     """
     return {
-        i: unsure(solved.motions[i], found, ahead, i, walk.first)
+        i: disturbance_covariance(solved.motions[i], found, ahead, i, walk.first)
         for i, walk in enumerate(problem.layout.walks)
         if walk.way is not None and len(solved.motions[i].noise)
     }
@@ -156,13 +156,13 @@ def find_slips(problem: Problem, solved: Solution, doubts: Doubts) -> list[Slip]
             k = int(gain.argmax())
             east, north = off[k].tolist()
             slip = Slip(walk.number, float(middle[k]), (east, north))
-            if _agreed(problem, solved, slip, float(gain[k])):
+            if _confirmed(problem, solved, slip, float(gain[k])):
                 slips.append(slip)
             gain = np.where(np.abs(middle - middle[k]) < APART_S, -np.inf, gain)
     return slips
 
 
-def _agreed(problem: Problem, solved: Solution, slip: Slip, gain: float) -> bool:
+def _confirmed(problem: Problem, solved: Solution, slip: Slip, gain: float) -> bool:
     """Whether a slip would be found without the radio that pulls most at the ways before and after it.
 
     A wall that comes between two radios, or a breadcrumb that was kicked, changes what one of them says.

@@ -36,7 +36,7 @@ def turn_between(was_m: Array, now_m: Array) -> float:
 def moved_from(
     reference: Array, here: Array, places: Indices, speeds: Indices, pivot_m: Array, turned_by: float
 ) -> Array:
-    """What a prior takes for deviations from its reference, n.
+    """Deviations of an estimate from a prior's reference, with the map's turn taken out, n.
 
     R(−θ) x − r + θ J r of places: what a turn of the whole map by θ moves is along (J r, 1) only, however
     large the turn, and of that the prior knows nothing but what was said of headings.
@@ -62,7 +62,7 @@ def moved_from(
 
 
 def turned(left: Remainder, layout: Layout, pivot_m: Array, was: Array, now: Array) -> Remainder:
-    """A remainder with what it knows of standing nodes said where they are now.
+    """A remainder re-expressed at the present places of standing nodes.
 
     Each deviation from x is taken for one from r in which the part along J x, a turn about the pivot, is one
     along J r, see `turned_along`.

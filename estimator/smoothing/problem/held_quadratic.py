@@ -1,4 +1,4 @@
-"""What readings say of the border that are not looked at again: a parabola about an estimate."""
+"""Readings of walks that are held, as a quadratic cost of the border about an estimate."""
 
 from typing import NamedTuple
 

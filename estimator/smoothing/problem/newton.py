@@ -12,7 +12,7 @@ from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array, Indices
 from estimator.graph.robust import Weighted, prior_cost, total_cost
 from estimator.smoothing.chain.chain import Chain
-from estimator.smoothing.chain.strand import Strand, Way
+from estimator.smoothing.chain.strand import Strand, WalkMotion
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.motions import Motions
 from estimator.smoothing.keyframes.priors import own_priors
@@ -23,7 +23,7 @@ from estimator.smoothing.problem.marginal_prior import MarginalPrior
 from estimator.smoothing.problem.search_direction import NewtonStep, conjugate_step
 from estimator.smoothing.problem.solution import Solution, Trial
 from estimator.smoothing.problem.sparsity import Sparsity
-from estimator.smoothing.readings.curvature import add_bends
+from estimator.smoothing.readings.curvature import add_curvature
 from estimator.smoothing.readings.rows import Linearised, Rows
 from estimator.smoothing.readings.weights import weigh_readings
 
@@ -157,13 +157,13 @@ class Problem:
         layout, rows = self.layout, self.rows
         length = layout.length if until is None else until + 1
         chain = Chain(length, layout.width, self.coupled.groups.each)
-        ways: list[list[Way]] = [[] for _ in chain.strands]
+        ways: list[list[WalkMotion]] = [[] for _ in chain.strands]
         for i, (walk, motion) in enumerate(zip(layout.walks, motions, strict=True)):
             group, block = self.coupled.groups.home(i)
-            ways[group].append(Way(block, walk.first, walk.last, motion))
+            ways[group].append(WalkMotion(block, walk.first, walk.last, motion))
         # Its memory is written first here: threads that do so wait for each other.
         for strand, own in zip(chain.strands, ways, strict=True):
-            strand.go(own)
+            strand.add_motions(own)
         if self._carried is not None:
             self._carried.add(chain, self.coupled.shared, x)
         if self.aside is not None:
@@ -205,7 +205,7 @@ class Problem:
         """
         for signed in (True, False) if near else (False,):
             chain = self.assemble(x, linear, weighted, motions)
-            self.bend(chain, x, weighted, signed)
+            self.add_curvature(chain, x, weighted, signed)
             slope = chain.slope()
             chain.damp(damping)
             try:
@@ -217,21 +217,21 @@ class Problem:
             break
         return NewtonStep(np.concatenate([steps.ravel(), fixed]), slope, chain.promised)
 
-    def bend(self, chain: Chain, x: Array, weighted: Weighted, signed: bool) -> None:
-        """Add the rows' own curvature to the normal equations: for the step, not for what is known.
+    def add_curvature(self, chain: Chain, x: Array, weighted: Weighted, signed: bool) -> None:
+        """Add the curvature of distances to the normal equations: for the step, not for the covariance.
 
         Args:
             chain: takes it.
             x: the estimate, flat.
             weighted: how the rows are weighed.
-            signed: negative curvature too; see `curvature.add_bends`.
+            signed: negative curvature too; see `curvature.add_curvature`.
         """
         rows, placed = self.rows, self.coupled.rows
         told = x, weighted.information, weighted.residual, signed, placed.slab, placed.columns
 
         def add(strand: Strand, part: Indices) -> None:
             if len(part):
-                add_bends(rows.readings, part, *told, strand.diagonal, strand.wide, strand.corner)
+                add_curvature(rows.readings, part, *told, strand.diagonal, strand.wide, strand.corner)
 
         chain.each(add, self.coupled.pairs)
 
@@ -243,7 +243,7 @@ class Problem:
         resting: float = RESTING,
         kinked: Array | None = None,
     ) -> Solution:
-        """Newton's method as far as its curvature is positive, until nothing is to be had any more.
+        """Newton's method with the positive part of the curvature, until a step promises too little.
 
         Args:
             x: where to start, flat.
@@ -295,6 +295,6 @@ class Problem:
         return Solution(x, chain, linear, weighted, motions, cost, rests)
 
     def at(self, x: Array) -> Trial:
-        """What there is at an estimate."""
+        """Residuals, motions and cost at an estimate, flat."""
         residual, motions = self.rows.residual(x), self.motions(x)
         return Trial(x, residual, motions, self.cost(x, residual, motions))

@@ -16,7 +16,7 @@ NOWHERE_M2 = 1e-6
 
 
 @njit(cache=True, nogil=True)
-def add_bends(
+def add_curvature(
     readings: Readings,
     chosen: Integers,
     x: Array,
@@ -79,7 +79,7 @@ def add_bends(
             across, along = upwards, max(along, 0.0)
         if across == 0.0 and upwards == 0.0 and along == 0.0:
             continue
-        bend_at(e, n, u, across, upwards, along, bend)
+        curvature_at(e, n, u, across, upwards, along, bend)
         at, first, second = slab[i], columns[i, 0], columns[i, STATES]
         a_moves, b_moves = 0 <= first < width, 0 <= second < width
         # Many readings are made at their keyframes: from there nothing has been turned.
@@ -118,7 +118,9 @@ def add_bends(
 
 
 @njit(cache=True)
-def bend_at(e: float, n: float, u: float, across: float, upwards: float, along: float, bend: Array) -> None:
+def curvature_at(
+    e: float, n: float, u: float, across: float, upwards: float, along: float, bend: Array
+) -> None:
     """A curvature that is given along three axes at right angles, by the place of one end.
 
     Args:

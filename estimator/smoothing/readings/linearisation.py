@@ -100,7 +100,7 @@ def counted_from(kind: int, constant: float, ends: Table, i: int, x: Array) -> f
 
 
 @njit(cache=True)
-def pull(slope: Array, turned: Array, row: Array) -> None:
+def chain_rule(slope: Array, turned: Array, row: Array) -> None:
     """Derivatives by an end's six numbers (`row`), from those by its place (3)."""
     for c in range(3):
         row[c] = slope[c]
@@ -158,10 +158,10 @@ def jacobians(readings: Readings, x: Array) -> Array:
         seen = predict_pair(kind, value[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
         if ends_a.kind[i] != FIXED:
             slope[0], slope[1], slope[2] = seen.by_e, seen.by_n, seen.by_u
-            pull(slope, by_a, found[i, :6])
+            chain_rule(slope, by_a, found[i, :6])
         if ends_b.kind[i] != FIXED:
             slope[0], slope[1], slope[2] = -seen.by_e, -seen.by_n, -seen.by_u
-            pull(slope, by_b, found[i, 6:12])
+            chain_rule(slope, by_b, found[i, 6:12])
         if kind < BEARING:
             found[i, 12], found[i, 13] = seen.by_first, seen.by_second
         elif kind == BODY_BEARING and ends_a.kind[i] == UNIT:
@@ -190,8 +190,8 @@ def jacobians(readings: Readings, x: Array) -> Array:
 
 
 @njit(cache=True)
-def apart(readings: Readings, x: Array) -> Array:
-    """From the second end of each pair to the first one at an estimate x, flat, m × 3 (m)."""
+def separations(readings: Readings, x: Array) -> Array:
+    """Vector from the second end of each pair to the first at an estimate x, flat, m × 3 (m)."""
     m = len(readings.kind)
     found, a, b, turned = np.empty((m, 3)), np.empty(3), np.empty(3), np.zeros((3, 3))
     ends_a, ends_b = readings.a, readings.b
@@ -205,7 +205,7 @@ def apart(readings: Readings, x: Array) -> Array:
 
 
 @njit(cache=True)
-def stretch(
+def scale_sigmas(
     readings: Readings,
     x: Array,
     through: NDArray[np.bool_],
@@ -215,7 +215,7 @@ def stretch(
     alone: Array,
     sigma: Array,
 ) -> None:
-    """Through a floor a reading is worth little, and an encounter is sharp.
+    """Set the sigmas of readings through floors and of encounters, in place.
 
     Args:
         readings: of the window.
@@ -227,7 +227,7 @@ def stretch(
         alone: standard deviation that each would have were there none alike, m at least.
         sigma: standard deviations of all rows, m at least, changed.
     """
-    way, kinds, extra = apart(readings, x), readings.kind, readings.extra
+    way, kinds, extra = separations(readings, x), readings.kind, readings.extra
     value, constants = readings.value, readings.constant
     for i in range(len(kinds)):
         e, n, u = way[i, 0], way[i, 1], way[i, 2]
@@ -239,8 +239,8 @@ def stretch(
 
 
 @njit(cache=True)
-def add_unsure(jacobian: Array, a: Array, b: Array, on: Array, by: Array, sigma: Array) -> None:
-    """Add to the noise of all rows what their units' own ways since their keyframes are unsure by.
+def add_reckoning_noise(jacobian: Array, a: Array, b: Array, on: Array, by: Array, sigma: Array) -> None:
+    """Add to the noise of all rows the dead reckoning noise of their ends since their keyframes.
 
     Args:
         jacobian: of the rows, m × 14.

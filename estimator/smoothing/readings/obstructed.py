@@ -80,14 +80,16 @@ def _odds(link: Integers, alike: Array, residual: Array, floor: Array, rungs: Ar
         return odds
     usual = max(np.median(np.abs(off[felt])) / HALF, physics.SIGMA_FLOOR_M)
     for begin in BEGIN:
-        found, likely = _settle(before, kept, off, felt, floor, begin * usual, rungs, counts)
+        found, likely = _expectation_maximisation(
+            before, kept, off, felt, floor, begin * usual, rungs, counts
+        )
         if likely > best:
             odds, best = found, likely
     return odds
 
 
 @njit(cache=True)
-def _settle(
+def _expectation_maximisation(
     before: Integers,
     kept: Array,
     off: Array,
@@ -97,7 +99,7 @@ def _settle(
     rungs: Array,
     counts: Array,
 ) -> tuple[Array, float]:
-    """Those odds by expectation and maximisation, and how likely the differences are with them.
+    """Odds of each excess by expectation maximisation, and the log likelihood of the differences then.
 
     Learned on the way: the noise of a clear link, and how common each excess is where no floor is between.
     """
@@ -108,7 +110,7 @@ def _settle(
         for k in felt:
             for r in range(n):
                 told[k, r] = EACH * _log_density(off[k], sigma, rungs[r])
-        _carry(before, kept, told, onward, back)
+        _sum_along_links(before, kept, told, onward, back)
         for i in range(m):
             most = -math.inf
             for r in range(n):
@@ -147,8 +149,8 @@ def _usual(share: Array, floor: float, rung: int) -> float:
 
 
 @njit(cache=True)
-def _carry(before: Integers, kept: Array, told: Array, onward: Array, back: Array) -> None:
-    """Sum up along each link, there and back, what is told of it: that fades as its error does."""
+def _sum_along_links(before: Integers, kept: Array, told: Array, onward: Array, back: Array) -> None:
+    """Sum log odds along each link, forward and backward; they fade as the link's error does."""
     onward[:], back[:] = told, 0.0
     for i in range(len(told)):
         if before[i] >= 0:

@@ -19,11 +19,11 @@ from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.unknowns import Unknowns
 from estimator.smoothing.readings.linearisation import (
     Readings,
-    add_unsure,
-    apart,
+    add_reckoning_noise,
     jacobians,
     residuals,
-    stretch,
+    scale_sigmas,
+    separations,
 )
 from estimator.smoothing.readings.obstructed import excess
 from estimator.smoothing.readings.partial import partial
@@ -165,7 +165,7 @@ class Rows:
         self.shift = np.zeros(len(self.nominal))
         off = residuals(self._readings, x)
         among = self._inside & (self.pairs[:, 1] == RANGE) & ~self.through(x)
-        steep_m = np.abs(apart(self._readings, x)[:, 2])
+        steep_m = np.abs(separations(self._readings, x)[:, 2])
         white, common = self._white.copy(), self._common.copy()
         for source in np.unique(self.source[:m][among]):
             at = np.flatnonzero(among & (self.source[:m] == source))
@@ -207,12 +207,12 @@ class Rows:
         self.sigma = self.told.copy()
         held = self.floors is not None
         through = self._inside if self.floors is None else self.floors
-        stretch(self._readings, x, through, held, self._strongest, self.alike, self._alone, self.sigma)
-        add_unsure(jacobian, *self._unsure_m2, self.sigma)
+        scale_sigmas(self._readings, x, through, held, self._strongest, self.alike, self._alone, self.sigma)
+        add_reckoning_noise(jacobian, *self._unsure_m2, self.sigma)
 
     def through(self, x: Array) -> NDArray[np.bool_]:
         """Which pairs go through a floor at an estimate, flat, m."""
-        return np.asarray(self._inside & (np.abs(apart(self._readings, x)[:, 2]) > physics.FLOOR_M))
+        return np.asarray(self._inside & (np.abs(separations(self._readings, x)[:, 2]) > physics.FLOOR_M))
 
     def places(self, x: Array) -> tuple[Array, Array]:
         """Where both ends of each pair are at an estimate, m × 3 each (m)."""

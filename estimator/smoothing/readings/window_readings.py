@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from estimator.fusion.memory.ledger import BEARING, GYRO_BIAS, RSSI
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.smoothing.keyframes.ends import UNIT, Ends, Ground, ends_of, taken
+from estimator.smoothing.keyframes.ends import UNIT, Ends, Ground, ends_of, selected_ends
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.readings.encounters import candidates
 from estimator.smoothing.readings.linearisation import Readings
@@ -72,8 +72,12 @@ def window_readings(
         outside: see `selection.choose`.
         headings: see `Readings`.
     """
-    pairs, singles, drops = newer(ledger.pairs, since_t), newer(ledger.singles, since_t), ledger.drops
-    drops = newer(drops, since_t)
+    pairs, singles, drops = (
+        rows_since(ledger.pairs, since_t),
+        rows_since(ledger.singles, since_t),
+        ledger.drops,
+    )
+    drops = rows_since(drops, since_t)
     t, nobody = pairs[:, 0].copy(), np.zeros(max(len(singles), len(drops)), dtype=np.bool_)
     first, second, nearest = numbers(pairs, 2), numbers(pairs, 3), np.empty(len(pairs), dtype=np.bool_)
     kinds = ground.nodes.kind
@@ -81,15 +85,19 @@ def window_readings(
         nearest[i] = kinds[first[i]] != UNIT and kinds[second[i]] != UNIT
     a, b = ends_of(ground, first, t, nearest), ends_of(ground, second, t, nearest)
     found = choose(pairs, a.stood, b.stood, technology, outside)
-    pairs, a, b = some(pairs, found.chosen), taken(a, found.chosen), taken(b, found.chosen)
+    pairs, a, b = (
+        selected_rows(pairs, found.chosen),
+        selected_ends(a, found.chosen),
+        selected_ends(b, found.chosen),
+    )
     extra, inside = found.extra[found.chosen], found.inside[found.chosen]
     on = ends_of(ground, numbers(singles, 1), singles[:, 0].copy(), nobody[: len(singles)])
     usable = on.stood.usable & (on.stood.columns[:, 0] >= 0)
-    singles, on = some(singles, usable), taken(on, usable)
+    singles, on = selected_rows(singles, usable), selected_ends(on, usable)
     by = ends_of(ground, numbers(drops, 2), drops[:, 0].copy(), nobody[: len(drops)])
     crumb = ends_of(ground, numbers(drops, 1), drops[:, 0].copy(), nobody[: len(drops)])
     usable = by.stood.usable & crumb.stood.usable
-    drops, by, crumb = some(drops, usable), taken(by, usable), taken(crumb, usable)
+    drops, by, crumb = selected_rows(drops, usable), selected_ends(by, usable), selected_ends(crumb, usable)
     stood = a.stood, b.stood, on.stood, by.stood, crumb.stood
     off = np.full(len(singles), -1, dtype=np.int64)
     for i in range(len(singles)):
@@ -107,13 +115,13 @@ def window_readings(
 
 
 @njit(cache=True)
-def newer(rows: Array, since_t: float) -> Array:
+def rows_since(rows: Array, since_t: float) -> Array:
     """Rows of the ledger from an epoch on (s)."""
-    return some(rows, rows[:, 0] >= since_t)
+    return selected_rows(rows, rows[:, 0] >= since_t)
 
 
 @njit(cache=True)
-def some(rows: Array, chosen: NDArray[np.bool_]) -> Array:
+def selected_rows(rows: Array, chosen: NDArray[np.bool_]) -> Array:
     """Some of m rows; the rows themselves where that is all of them."""
     return rows if chosen.all() else rows[chosen]
 

@@ -9,8 +9,8 @@ from estimator.fusion.learned.calibration import Calibration, doubt
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES
-from estimator.smoothing.learning.delays import pulling_of
-from estimator.smoothing.learning.radios import told_by
+from estimator.smoothing.learning.delays import scored_delays
+from estimator.smoothing.learning.radios import ranges_by_radio
 from estimator.smoothing.learning.suspected_delays import Suspect, suspects
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
@@ -54,8 +54,8 @@ def suspected(problem: Problem, solved: Solution) -> list[Suspect]:
         problem: of the chain.
         solved: its solution, whose chain is solved.
     """
-    told = told_by(problem, solved)
-    return list(suspects(problem, solved, told, pulling_of(problem, solved, told)))
+    told = ranges_by_radio(problem, solved)
+    return list(suspects(problem, solved, told, scored_delays(problem, solved, told)))
 
 
 def doubt_delays(problem: Problem, solved: Solution, found: tuple[Array, Array, Array]) -> None:

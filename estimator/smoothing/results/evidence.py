@@ -26,7 +26,7 @@ from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.results.calibration_doubt import doubted, scales, suspected
-from estimator.smoothing.results.heading_arcs import last_headings, responses, swung
+from estimator.smoothing.results.heading_arcs import arc_excess_m2, last_headings, responses
 
 HELD_MAX = 30
 REJECTED_MAX = 20
@@ -80,7 +80,7 @@ def explain(
     doubt = doubt_m2(alternatives_now(layout, solved.x, modes).get(name, ()), solved.x[start : start + 2])
     across = told[:, :2]
     total = float(np.trace(covariance[:2, :2]))
-    doubt += swung(told[:, 3 : 3 + len(headings)], headings, start)
+    doubt += arc_excess_m2(told[:, 3 : 3 + len(headings)], headings, start)
     told_scales = told[:, 3 + len(headings) :]
     doubt += doubted(judged, solved.x, told_scales, suspected(problem, solved), start)
     # Last, as for a track: it is the least that a height is unsure by, whatever else there is to doubt.

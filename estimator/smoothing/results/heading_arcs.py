@@ -35,8 +35,8 @@ def last_headings(layout: Layout) -> list[int]:
     ]
 
 
-def swing(layout: Layout, solved: Solution, found: tuple[Array, Array, Array]) -> None:
-    """Let covariances hold what headings that are hardly known do to places.
+def widen_by_arcs(layout: Layout, solved: Solution, found: tuple[Array, Array, Array]) -> None:
+    """Widen covariances of places from the tangent of a hardly known heading to its arc, in place.
 
     Args:
         layout: of the chain.
@@ -60,11 +60,11 @@ def swing(layout: Layout, solved: Solution, found: tuple[Array, Array, Array]) -
         told = responses(layout, solved, loose)
         for start in layout.stands.values():
             own = slice(start, start + PLACES)
-            border[own, own] += swung(told, loose, size + start)
+            border[own, own] += arc_excess_m2(told, loose, size + start)
 
 
-def swung(told: Array, headings: Sequence[int], start: int) -> Array:
-    """What is to be added to one place's covariance, 3 × 3 (m²).
+def arc_excess_m2(told: Array, headings: Sequence[int], start: int) -> Array:
+    """The arc's second moment less the tangent's, for one place, 3 × 3 (m²).
 
     Args:
         told: columns of the covariance for headings, size × m.

@@ -10,7 +10,7 @@ from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, tuple_of, uppe
 from estimator.fusion.motion.constant_velocity import free_motion
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.layout import Layout, Walk
-from estimator.smoothing.keyframes.walks import led_by
+from estimator.smoothing.keyframes.walks import dead_reckon
 
 Lifetimes = Mapping[str, tuple[float, float]]
 
@@ -32,11 +32,11 @@ def tracks(
     for i, walk in enumerate(layout.walks):
         # Who has come back has a walk for each time that he was in.
         before = found.get(walk.node.node, [])
-        found[walk.node.node] = before + _walked(layout, walk, i, x, (keyframes, ahead), lifetimes)
+        found[walk.node.node] = before + _moving_points(layout, walk, i, x, (keyframes, ahead), lifetimes)
     size = layout.length * layout.width
     stands = layout.state.ledger.table("stands")
     drops = {int(row[1]): float(row[0]) for row in layout.state.ledger.table("drops")}
-    lay = _lay(layout, drops)
+    lay = _lying_spans(layout, drops)
     for row in stands:
         number = int(row[1])
         node, name, start = layout.state.life(number), layout.state.owners[number], layout.stands[number]
@@ -67,8 +67,8 @@ def tracks(
     return {name: points for name, points in found.items() if points}
 
 
-def _lay(layout: Layout, drops: Mapping[int, float]) -> dict[int, tuple[float, float]]:
-    """From when to when a node that was moved or dropped again lay where each of its numbers tells (s).
+def _lying_spans(layout: Layout, drops: Mapping[int, float]) -> dict[int, tuple[float, float]]:
+    """First and last epoch for which each number of a standing node in the ledger holds (s).
 
     Args:
         layout: of the window.
@@ -97,7 +97,7 @@ def _lay(layout: Layout, drops: Mapping[int, float]) -> dict[int, tuple[float, f
     return found
 
 
-def _walked(
+def _moving_points(
     layout: Layout,
     walk: Walk,
     index: int,
@@ -105,7 +105,7 @@ def _walked(
     covariances: tuple[Array, Array],
     lifetimes: Lifetimes,
 ) -> list[TrackPoint]:
-    """Points of a moving node: between two keyframes along its way, which is bent to meet the second one."""
+    """Track points of a moving node: dead reckoned between keyframes, corrected to meet the later one."""
     first, last = lifetimes[walk.node.node]
     if walk.node.mode == "retired":
         last = min(last, walk.node.t)
@@ -121,8 +121,8 @@ def _walked(
     span = np.maximum(until - since, 1e-9)
     share = np.clip((seconds - since) / span, 0.0, 1.0)
     share[after == at] = 0.0
-    places, _ = _led(walk, states[at], since, np.maximum(seconds, since))
-    led_to, noise = _led(walk, states[at], since, until)
+    places, _ = _dead_reckoned(walk, states[at], since, np.maximum(seconds, since))
+    led_to, noise = _dead_reckoned(walk, states[at], since, until)
     places += np.where((after > at)[:, None], share[:, None] * (states[after, :3] - led_to), 0.0)
     part = share[:, None, None]
     keyframes, ahead = covariances
@@ -146,12 +146,12 @@ def _walked(
     ]
 
 
-def _led(walk: Walk, states: Array, since: Array, until: Array) -> tuple[Array, Array]:
-    """Where a node's way leads from states, m × 3 (m), and the variances that it adds, m × 3 (m²)."""
+def _dead_reckoned(walk: Walk, states: Array, since: Array, until: Array) -> tuple[Array, Array]:
+    """Dead reckoned places from states, m × 3 (m), and the variances that this adds, m × 3 (m²)."""
     durations = until - since
     if walk.way is not None:
         parts = walk.way.between(since, until)
-        after, _ = led_by(states, parts[:, :3], parts[:, 3:6], durations)
+        after, _ = dead_reckon(states, parts[:, :3], parts[:, 3:6], durations)
         return after[:, :3], parts[:, [6, 6, 7]]
     moved = {d: free_motion(walk.node.role, d) for d in set(durations.tolist())}
     led = np.array([moved[d][0][:3] @ s for d, s in zip(durations.tolist(), states, strict=True)])

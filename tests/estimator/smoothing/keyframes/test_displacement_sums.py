@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.fusion.motion.silence import wandered_m2
-from estimator.smoothing.keyframes.displacement_sums import LAID, SummedEnds, Way, lay_out
+from estimator.smoothing.keyframes.displacement_sums import LAID, SummedEnds, Way, set_sums_of
 
 Steps = np.ndarray[tuple[int, int], np.dtype[np.float64]]
 
@@ -59,7 +59,7 @@ def test_a_way_laid_out_for_readings_is_what_lies_between_their_epochs(
     )
     numbers = np.arange(len(since)) % 2
     laid = SummedEnds(*(np.full((len(since), 3), 7.0) for _ in range(3)))
-    lay_out(way.begin_t, way.marks, way.sums, 1, numbers, since, until, laid)
+    set_sums_of(way.begin_t, way.marks, way.sums, 1, numbers, since, until, laid)
     mine, said = numbers == 1, way.between(since, until)[:, :LAID]
     assert laid.delta_m[mine] == pytest.approx(said[mine, :3])
     assert laid.moment[mine] == pytest.approx(said[mine, 3:6])

@@ -9,7 +9,7 @@ from estimator.fusion import physics
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.learning.delays import delays, doubted, judged
+from estimator.smoothing.learning.delays import delay_of, delays, doubted
 from estimator.smoothing.learning.radios import Delay
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
@@ -83,7 +83,7 @@ def test_a_radio_may_be_off_by_what_readings_and_both_kinds_of_radios_leave_open
     information: float, bias_m: float
 ) -> None:
     """Against the mixture's density, summed up over all delays."""
-    found = judged(("uwb", "f"), np.full(2, 0.5 * information * bias_m), 0.5 * information * np.eye(2))
+    found = delay_of(("uwb", "f"), np.full(2, 0.5 * information * bias_m), 0.5 * information * np.eye(2))
     usual = physics.RANGE_BIAS_SIGMA_M["uwb"] ** 2
     wide = usual + physics.DELAY_SIGMA_M**2
     off_m = np.linspace(-15.0, 15.0, 300_001)

@@ -14,8 +14,8 @@ from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.learning.delay_scores import follow_on
-from estimator.smoothing.learning.range_noise import learn_ranging, taken
+from estimator.smoothing.learning.delay_scores import lag_one_correlation
+from estimator.smoothing.learning.range_noise import explained_count, learn_ranging
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.whole import SLACKS_M
@@ -129,16 +129,16 @@ def test_what_the_unknowns_take_up_of_readings_is_told_by_probing() -> None:
                 whole[r, start + column] += slope
     exact = float(np.trace(np.linalg.solve(matrix, (whole * root[:, None] ** 2).T @ whole)))
     assert exact > 50.0
-    assert taken(problem, solved, at, root) == pytest.approx(exact, rel=0.03)
+    assert explained_count(problem, solved, at, root) == pytest.approx(exact, rel=0.03)
 
 
 def test_errors_follow_on_from_those_of_their_own_link_only() -> None:
     """One link's are all alike, the other's alternate; together they say nothing of each other."""
     links, errors = np.array([0, 1] * 4), np.array([1.0, 1.0, 1.0, -1.0] * 2)
-    assert follow_on(links[links == 0], errors[links == 0]) == pytest.approx(1.0)
-    assert follow_on(links[links == 1], errors[links == 1]) == 0.0
-    assert follow_on(links, errors) == 0.0
-    assert follow_on(np.full(3, -1), np.ones(3)) == 0.0
+    assert lag_one_correlation(links[links == 0], errors[links == 0]) == pytest.approx(1.0)
+    assert lag_one_correlation(links[links == 1], errors[links == 1]) == 0.0
+    assert lag_one_correlation(links, errors) == 0.0
+    assert lag_one_correlation(np.full(3, -1), np.ones(3)) == 0.0
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -5,8 +5,8 @@ import pytest
 
 from estimator.fusion.learned.delays import Suspicion
 from estimator.graph.robust import Weighted
-from estimator.smoothing.learning.delays import pulling_of
-from estimator.smoothing.learning.radios import Delay, told_by
+from estimator.smoothing.learning.delays import scored_delays
+from estimator.smoothing.learning.radios import Delay, ranges_by_radio
 from estimator.smoothing.learning.suspected_delays import suspects, suspicions
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
@@ -30,7 +30,7 @@ def shorter(weighted: Weighted, ranges: np.ndarray, by_m: float) -> Weighted:
 def test_everything_is_where_it_would_be_with_ranges_that_are_a_metre_shorter(radio: str) -> None:
     """Against the whole normal equations, solved with such ranges."""
     problem, solved = at_rest(0.0)
-    told = told_by(problem, solved)
+    told = ranges_by_radio(problem, solved)
     mine = told.ranges[(told.carried == told.radios.index(("uwb", radio))).any(axis=1)]
     matrix, slope = dense(solved.chain)
     other = shorter(solved.weighted, mine, 1.0)
@@ -47,8 +47,8 @@ def told_in_a_window(delay_m: float, middle_m: float) -> dict[str, Suspicion]:
     problem = problem_of(fused(world(53, delay_m, crew=3, unit=True, middle_m=middle_m).readings))
     solved = problem.solve(problem.solve(problem.layout.start()).x)
     solved.chain.reduce()
-    told = told_by(problem, solved)
-    found = suspicions(problem, solved, told, pulling_of(problem, solved, told))
+    told = ranges_by_radio(problem, solved)
+    found = suspicions(problem, solved, told, scored_delays(problem, solved, told))
     return {name: suspicion for (_, name), suspicion in found.items()}
 
 

@@ -13,10 +13,10 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.smoothing.learning.wrong_steps import (
     Slip,
+    disturbance_covariance,
     doubts_of,
     find_slips,
     gains,
-    unsure,
     widen_steps,
     withdraw,
 )
@@ -129,7 +129,7 @@ def test_the_gain_is_what_the_slip_adds_to_the_marginal_likelihood() -> None:
     solved.chain.solve()
     found, ahead, _ = solved.chain.covariances()
     motion = solved.motions[0]
-    gain, _ = gains(motion, unsure(motion, found, ahead, 0, 0))
+    gain, _ = gains(motion, disturbance_covariance(motion, found, ahead, 0, 0))
     k = int(gain.argmax())
     times = problem.layout.times[:, 0]
     widen_steps(state, [Slip(problem.layout.walks[0].number, float(times[k + 1]) - 1e-6, (0.0, 0.0))])

@@ -19,7 +19,7 @@ def bent(problem: Problem, x: Array, weight: Array, signed: bool) -> Array:
     weighted = Weighted(np.ones(len(weight)), weight, np.ones(len(weight)))
     chain = problem.assemble(x, problem.linearise(x), weighted, problem.motions(x))
     before, _ = dense(chain)
-    problem.bend(chain, x, weighted, signed)
+    problem.add_curvature(chain, x, weighted, signed)
     return np.asarray(dense(chain)[0] - before)
 
 

@@ -13,7 +13,7 @@ from estimator.graph.dense import Array
 from estimator.measurements import bearing
 from estimator.smoothing.keyframes.displacement_sums import Way
 from estimator.smoothing.keyframes.ends import ends_of, ground_of, place_ends
-from estimator.smoothing.keyframes.walks import STATES, Motion, free_motions, led_by, unit_motion
+from estimator.smoothing.keyframes.walks import STATES, Motion, dead_reckon, free_motions, unit_motion
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.readings.rows import Rows
 from tests.estimator.smoothing.windows import difference, random_state
@@ -47,13 +47,13 @@ def test_where_a_unit_is_led_to_changes_with_its_states_as_told(seed: int) -> No
     way = Way(0.0, steps_of(seed), (1.0, 1.0))
     since, until = np.sort(chance.uniform(0.0, 40.0, (2, 5)), axis=0)
     between, before = way.between(since, until), unit_states(chance, 5)
-    _, transition = led_by(before, between[:, :3], between[:, 3:6], until - since)
+    _, transition = dead_reckon(before, between[:, :3], between[:, 3:6], until - since)
     for k in range(5):
         own = slice(k, k + 1)
 
         def led(x: Array, own: slice = own) -> Array:
             delta, moment = between[own, :3], between[own, 3:6]
-            there, _ = led_by(x[None], delta, moment, (until - since)[own])
+            there, _ = dead_reckon(x[None], delta, moment, (until - since)[own])
             return np.asarray(there[0])
 
         assert np.abs(transition[k] - difference(led, before[k])).max() < 1e-6
@@ -110,9 +110,9 @@ def test_two_steps_of_a_unit_lead_where_one_does(seed: int) -> None:
     there = before
     for a, b in ((marks[0], marks[1]), (marks[1], marks[2])):
         part = way.between(np.array([a]), np.array([b]))
-        there, _ = led_by(there, part[:, :3], part[:, 3:6], np.array([b - a]))
+        there, _ = dead_reckon(there, part[:, :3], part[:, 3:6], np.array([b - a]))
     whole = way.between(marks[:1], marks[2:])
-    once, _ = led_by(before, whole[:, :3], whole[:, 3:6], marks[2:] - marks[:1])
+    once, _ = dead_reckon(before, whole[:, :3], whole[:, 3:6], marks[2:] - marks[:1])
     assert np.abs(once - there).max() < 10.0 * 10.0 * (1e-4 * 8.0) ** 2
 
 
@@ -224,7 +224,9 @@ def test_a_moving_end_is_where_it_is_led_to_from_either_keyframe(incident: Probl
     for k in range(layout.length - 1):
         part = way.between(layout.times[k : k + 1, walk], layout.times[k + 1 : k + 2, walk])
         duration = layout.times[k + 1 : k + 2, walk] - layout.times[k : k + 1, walk]
-        keyframes[k + 1, walk] = led_by(keyframes[k : k + 1, walk], part[:, :3], part[:, 3:6], duration)[0][0]
+        keyframes[k + 1, walk] = dead_reckon(keyframes[k : k + 1, walk], part[:, :3], part[:, 3:6], duration)[
+            0
+        ][0]
     t = np.linspace(0.0, 40.0, 301)
     ends = ends_of(
         ground_of(layout), np.full(len(t), layout.walks[walk].number), t, np.zeros(len(t), dtype=bool)

@@ -10,7 +10,7 @@ from estimator.measurements.drop import Drop
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
-from estimator.smoothing.results.heading_arcs import swing, swung
+from estimator.smoothing.results.heading_arcs import arc_excess_m2, widen_by_arcs
 from estimator.smoothing.whole import first_pass, solve_whole
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import BatchSmoother, in_order
@@ -56,7 +56,7 @@ def test_places_and_the_next_ones_are_told_of_one_distribution(readings: list[An
     solved.chain.solve()
     found = solved.chain.covariances()
     linear = found[0].copy()
-    swing(layout, solved, found)
+    widen_by_arcs(layout, solved, found)
     keyframes, ahead, border = found
     (walk,) = layout.walks
     assert np.abs(keyframes[walk.last, 0, :3, :3] - linear[walk.last, 0, :3, :3]).max() > 0.1
@@ -73,7 +73,7 @@ def test_a_height_that_goes_by_the_heading_is_turned_with_its_place() -> None:
     slopes, variance = np.array([0.0, 10.0, 0.5, 1.0]), 9.0
     told = slopes[:, None] * variance
     place = variance * np.outer(slopes[:3], slopes[:3]) + 0.1**2 * np.eye(3)
-    turned = place + swung(told, [3], 0)
+    turned = place + arc_excess_m2(told, [3], 0)
     assert np.linalg.eigvalsh(turned)[0] > 0.1**2 - 1e-9
 
 
