@@ -16,7 +16,7 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 from backend.errors import NotUnderstood
 
 EXTENSION = "firethread.push"
-"""Under this name of the ASGI scope's extensions a route finds its `Push`."""
+"""Under this name of the ASGI scope's extensions a route finds its connection, a `PushProtocol`."""
 
 UNSENT_BYTES = 32 * 1024
 """What the kernel may hold unsent for a connection: more would be a backlog of old pictures."""

@@ -37,12 +37,12 @@ class Image(msgspec.Struct, frozen=True, array_like=True):
 
     @property
     def matrix(self) -> Array:
-        """What it makes of ways, 2 × 2."""
+        """Its linear part, 2 × 2."""
         return np.array([[self.cosine, -self.sine * self.flip], [self.sine, self.cosine * self.flip]])
 
     @property
     def shift_m(self) -> Array:
-        """How far it is moved, 2 (m)."""
+        """Its translation, 2 (m)."""
         return np.array([self.east_m, self.north_m])
 
     def of(self, places_m: Array) -> Array:
@@ -50,19 +50,19 @@ class Image(msgspec.Struct, frozen=True, array_like=True):
         return np.asarray(places_m @ self.matrix.T + self.shift_m)
 
     def move(self, states: Array) -> None:
-        """Put states of a node without PDR there, m × 6, in place."""
+        """Move states of a node without PDR (place and velocity, m × 6) to their images, in place."""
         states[:, :2] = self.of(states[:, :2])
         states[:, 3:5] = states[:, 3:5] @ self.matrix.T
 
     def back(self) -> "Image":
-        """The image that leads back."""
+        """The inverse."""
         matrix = self.matrix.T
         east, north = (-matrix @ self.shift_m).tolist()
         sine = -self.sine if self.flip > 0 else self.sine
         return Image(self.cosine, sine, self.flip, east, north, -self.turned_rad)
 
     def after(self, first: Self) -> "Image":
-        """The image of an image."""
+        """Both as one: first `first`, then this."""
         matrix = self.matrix @ first.matrix
         east, north = self.of(first.shift_m).tolist()
         turned = self.turned_rad + first.turned_rad
@@ -70,13 +70,13 @@ class Image(msgspec.Struct, frozen=True, array_like=True):
         return Image(cosine, sine, self.flip * first.flip, east, north, turned)
 
     def through(self, here_m: Array, there_m: Array) -> "Image":
-        """The same, moved so that one place goes to another, 2 each (m)."""
+        """The same linear part, translated so that one place goes to another, 2 each (m)."""
         east, north = (there_m - self.matrix @ here_m).tolist()
         return Image(self.cosine, self.sine, self.flip, east, north, self.turned_rad)
 
 
 class Alternative(msgspec.Struct, frozen=True, array_like=True):
-    """That somebody may be elsewhere.
+    """Another place where somebody may be, with its probability.
 
     Attributes:
         of: number of the node whose way would be another one: his own, or somebody's who takes him along.
@@ -94,12 +94,12 @@ class Alternative(msgspec.Struct, frozen=True, array_like=True):
 
     @property
     def by_unit(self) -> bool:
-        """It is how somebody wears his unit that is open, not to which side he went."""
+        """Whether it comes of how a unit may be worn, not of the side somebody went to."""
         return self.since_t == ALWAYS
 
     @property
     def mode(self) -> tuple[int, float, Image]:
-        """What is the same for everybody in one solution."""
+        """Key of the solution that it is of, the same for everybody in that solution."""
         return self.of, self.since_t, self.way
 
 

@@ -70,7 +70,7 @@ def _widen_by_delay(state: FusionState, node: NodeState, suspicion: Suspicion, c
 
 @njit(cache=True)
 def widen(covariance: Array, row: int, factor: float) -> None:
-    """Let what depends on a number be as unsure as that is: add its share in everything once more.
+    """Add to all covariances what a larger variance of one number gives them, in place.
 
     Args:
         covariance: Σ, n × n, changed.

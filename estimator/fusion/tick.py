@@ -52,7 +52,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     Args:
         state: changed in place.
         until_t: end of the tick, Unix seconds.
-        readings: in canonical order (see `order`).
+        readings: in canonical order, see `canonical_order`.
     """
     state.notices, state.announced = [], {}
     state.newest_t = max(state.newest_t, until_t)

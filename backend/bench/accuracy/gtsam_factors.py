@@ -98,7 +98,7 @@ class Factors:
         return self.gtsam.BetweenFactorPose2(a, b, self.pose(*delta_m, 0.0), noise)
 
     def range(self, reading: Range, a: End, b: End) -> Any:
-        """A range, robust; `b` has no offset, or `a` takes it over (`relative_offset`)."""
+        """A range, robust; the offset of `b` is nil, for GTSAM's factor takes one of `a` alone."""
         noise = self._robust(self.gtsam.noiseModel.Isotropic.Sigma(1, reading.sigma_m or RANGE_SIGMA_M))
         return self.gtsam.RangeFactorWithTransformPose2(
             a[0], b[0], reading.range_m, noise, self.pose(*a[1], 0.0)

@@ -19,11 +19,11 @@ from estimator.measurements.displacement import Displacement
 
 
 class Mounting(NamedTuple):
-    """How a unit is worn: what it reports goes to the left by an angle, left and right exchanged first.
+    """How a unit is worn, as what corrects its reports: mirrored, if at all, then turned to the left.
 
     Attributes:
-        mirrored: left and right are exchanged.
-        turned_rad: by how much it is turned then.
+        mirrored: left and right of its reports are exchanged.
+        turned_rad: by how much they are then turned.
     """
 
     mirrored: bool = False
@@ -31,27 +31,27 @@ class Mounting(NamedTuple):
 
     @property
     def image(self) -> Image:
-        """What it makes of displacements."""
+        """The correction as an image of the ground plane."""
         return Image(math.cos(self.turned_rad), math.sin(self.turned_rad), -1.0 if self.mirrored else 1.0)
 
     def of(self, east: float, north: float) -> tuple[float, float]:
-        """What a displacement is that is reported as this (m)."""
+        """A reported displacement, corrected: east, north (m)."""
         led_e, led_n = self.image.of(np.array((east, north))).tolist()
         return led_e, led_n
 
     def faced(self, heading_rad: float | None) -> float | None:
-        """What a heading is that is reported as this (rad)."""
+        """A reported heading, corrected (rad)."""
         if heading_rad is None:
             return None
         return within_pi((-heading_rad if self.mirrored else heading_rad) + self.turned_rad)
 
     def after(self, first: "Mounting") -> "Mounting":
-        """The one and then the other."""
+        """Both corrections as one: first `first`, then this."""
         turned = -first.turned_rad if self.mirrored else first.turned_rad
         return Mounting(self.mirrored != first.mirrored, within_pi(turned + self.turned_rad))
 
     def back(self) -> "Mounting":
-        """What takes it back."""
+        """The inverse."""
         return self if self.mirrored else Mounting(False, -self.turned_rad)
 
 
@@ -65,7 +65,7 @@ def mounting_of(node: NodeState) -> Mounting:
 
 
 def reported(node: NodeState, reading: Displacement) -> Displacement:
-    """A displacement as a unit would report it that is worn the right way round."""
+    """A displacement, corrected by how its unit is taken to be worn."""
     worn = mounting_of(node)
     if worn == RIGHT:
         return reading

@@ -36,7 +36,7 @@ class Calibration(msgspec.Struct, frozen=True, array_like=True):
 
 
 def told_of(sigma: float, estimate: float, variance: float) -> Told:
-    """What an estimate says of a number without its prior; nothing where it is no better than that.
+    """Likelihood of a number: an estimate less its prior; `UNTOLD` where it adds no information.
 
     Args:
         sigma: standard deviation of the prior, of mean 0, that the estimate was made with.

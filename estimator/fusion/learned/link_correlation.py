@@ -15,8 +15,8 @@ TOLD, REPEATS, SINCE_T, SINCE_WAY = range(9, 13)
 itself included, share its error; how much of the error before it still held, 0 to 1; its error in units of
 the assumed sigma, NaN before it is fused. Of ranges, see `echoes`: what was read (m); what it is too long by,
 or below 0 how much shorter it is than was believed before (m); for how long (s); log odds that it is. See
-`repeated`: what was told (m), believed or not; how often in a row; since when it is another value than before
-(s), and how far both ends had walked by then (m)."""
+`repeated_ranges`: what was told (m), believed or not; how often in a row; since when it is another value than
+before (s), and how far both ends had walked by then (m)."""
 NEW = (-math.inf, 0.0, 0.0, 0.0, math.nan, 0.0, 0.0, 0.0, 0.0, math.nan, 0.0, -math.inf, 0.0)
 """Nothing is left of a reading that was made an eternity ago."""
 NONE: Array = np.zeros((0, len(NEW)))

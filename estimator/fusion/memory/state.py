@@ -149,23 +149,23 @@ class FusionState:
         return found
 
     def lives(self) -> Iterator[NodeState]:
-        """Every node as it is, and what those were before that have come back."""
+        """The states of all nodes, and the ended ones of those that were retired and came back."""
         yield from self.ended.values()
         yield from self.nodes.values()
 
     def life(self, number: int) -> NodeState:
-        """The node that a number in the ledger is of, as it is or was in the life that it is of."""
+        """State of the node with a number in the ledger: the present one, or the one that ended under it."""
         return self.ended.get(number) or self.nodes[self.owners[number]]
 
     def keep(self, life: NodeState) -> None:
-        """Put a changed record in the place of what `life` gives."""
+        """Replace the state that `life` gives for its number."""
         if life.index in self.ended:
             self.ended[life.index] = life
         else:
             self.nodes[life.node] = life
 
     def keep_poses(self) -> None:
-        """Take down where everyone who moves is now: the next solution of the window starts from there."""
+        """Enter everyone's present state in the ledger: the next solution of the window starts from there."""
         reference, starts = self.graph.reference.tolist(), self.graph.starts
         for node in self.nodes.values():
             if node.moving:

@@ -69,7 +69,7 @@ def swung_most_m2(across: Array, variance: Array) -> Array:
 
 
 def unbend(state: FusionState, node: NodeState) -> None:
-    """Let a place be anywhere about the tangent along which its heading moves it, as far off as its arc is.
+    """Widen a place's covariance in L by what the arc of its heading differs from the tangent.
 
     Args:
         state: the fusion: its graph is changed.

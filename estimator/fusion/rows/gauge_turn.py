@@ -39,7 +39,7 @@ def undo_turn(
     changed: Turning,
     base_m: Array,
 ) -> Array:
-    """Turn a tick's solution back, and say there what was known before.
+    """Turn a tick's solution back, and re-express the prior at its turned places.
 
     Along a turn g = (J x, 1) of the map the true gradient is that of what was known, gᵣᵀ b − gᵣᵀ L (x − r),
     and of readings that tell where north is. The solution has held the whole at rest by derivatives taken at

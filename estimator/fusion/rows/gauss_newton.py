@@ -145,7 +145,9 @@ def widen(
     covariance: Array,
     wider: Array,
 ) -> bool:
-    """What is added to the noise of readings for the state leaves so much open; see `arcs` and `nearness`.
+    """Variances added to readings whose h is curved over the state's uncertainty.
+
+    See `range_curvature` and `power_curvature`.
 
     Args:
         table: of m readings, those of one kind one after the other.
@@ -154,7 +156,7 @@ def widen(
         residual: z − h(x) of each, m.
         x: the estimate, n.
         covariance: of these, m × 8 × 8, see `joint`.
-        wider: takes the variances, m; nil of other kinds, and of a kind where none is worth minding.
+        wider: takes the variances, m; 0 for other kinds, and for a kind where all are negligible.
 
     Returns:
         Whether any is.

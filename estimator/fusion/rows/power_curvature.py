@@ -3,8 +3,8 @@
 A linear state knows the logarithm by its slope at the estimate. Who may be anywhere within tens of metres of
 a radio, and is thought to be beside it, would be known to a metre by one power, for there the logarithm is
 steep; at the next second by another one, elsewhere. So to a power's own noise is added by how much the
-logarithm and its tangent differ over what the state leaves open, as `arcs` does for ranges (García-Fernández,
-Svensson, Morelande, Särkkä 2015, eq. 11), with both deviations taken as independent.
+logarithm and its tangent differ over what the state leaves open, as `range_curvature` does for ranges
+(García-Fernández, Svensson, Morelande, Särkkä 2015, eq. 11), with both deviations taken as independent.
 """
 
 import numpy as np

@@ -50,7 +50,7 @@ class PredictedPairs(NamedTuple):
 def predict_pairs(
     table: Array, epochs: Array, units: Indices, powers: NDArray[np.bool_], seen: Prediction, x: Array
 ) -> PredictedPairs:
-    """What is foretold of the ranges of units; of those between two units nothing, for either may be bad.
+    """Predict the ranges and powers of units; not those between two units, for either may be bad.
 
     Args:
         table: of m readings, see `rows.Row`.

@@ -62,4 +62,5 @@ def test_one_that_is_off_is_suspected_of_more_than_others() -> None:
     assert not any(suspicion.alone for suspicion in found.values())
     off_m = {name: suspicion.off["uwb"][1] for name, suspicion in found.items()}
     assert 0.1 < off_m.pop("ff0") < 0.6
+    assert set(off_m) == {"ff1"}
     assert all(other_m < 0.1 for other_m in off_m.values())
