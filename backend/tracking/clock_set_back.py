@@ -30,8 +30,8 @@ _TIMES = {
 }
 
 
-class GoingOn(msgspec.Struct):
-    """A clock that goes on where the server's own is put back.
+class MonotonicClock(msgspec.Struct):
+    """The server's clock, made monotonic: it goes on where that is put back.
 
     Attributes:
         ahead_s: by how much it is ahead of the server's (s), whole seconds.
@@ -92,7 +92,7 @@ def on_one_clock(
         entries: of the log, in order.
         live: the incident goes by the server's clock; the others go by their readings, whatever that does.
     """
-    clock, newest_t = GoingOn(), None
+    clock, newest_t = MonotonicClock(), None
     known: list[AnyReading] = []
     for batch, readings in entries:
         if live and readings:

@@ -9,7 +9,7 @@ from backend.errors import Unavailable
 from backend.log.base import LoggedStretch, LogReader, RecordedFrame, Snapshot
 from backend.tracking.fold import IncidentFold, OtherState
 from backend.tracking.heads import MadeWith, told_by
-from backend.tracking.reading import Decoded, read_block
+from backend.tracking.log_blocks import Decoded, read_block
 
 Step = tuple[RecordedFrame | None, bool]
 """A row that is complete now, if any; and whether all is folded that was begun."""

@@ -11,7 +11,7 @@ from backend.live.past import SHOWN_WITHIN_S
 from backend.live.record import PictureRecord, RecordNotice
 from backend.log.base import LoggedBatch, RecordedFrame
 from backend.tracking.board import Board
-from backend.tracking.clock_set_back import GoingOn
+from backend.tracking.clock_set_back import MonotonicClock
 from backend.tracking.recorder import pieces, row_of
 from estimator import trackers
 from estimator.estimate import Relative
@@ -56,7 +56,7 @@ class State(msgspec.Struct, frozen=True, array_like=True):
     estimator: bytes
     stood: int | None = None
     begun: float = 0.0
-    clock: GoingOn = msgspec.field(default_factory=GoingOn)
+    clock: MonotonicClock = msgspec.field(default_factory=MonotonicClock)
 
 
 class _Version(msgspec.Struct, frozen=True, array_like=True):
@@ -109,7 +109,7 @@ class IncidentFold:
         self.seq = 0
         self.whole = True
         self.received = 0.0
-        self.clock = GoingOn()
+        self.clock = MonotonicClock()
         self.newest_t: float | None = None
         self.row: int | None = None
         self.stood: int | None = None

@@ -11,7 +11,7 @@ from backend.log.read import SqlLogReader
 from backend.tracking.clock_set_back import earlier, on_one_clock
 from backend.tracking.fold import IncidentFold, OtherState
 from backend.tracking.heads import Head
-from backend.tracking.reading import Decoded, read_block
+from backend.tracking.log_blocks import Decoded, read_block
 from estimator import trackers
 from estimator.estimate import Relative, TrackPoint
 from estimator.evidence import Advice, Evidence

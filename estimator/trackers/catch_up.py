@@ -6,67 +6,71 @@ To fold anew all that came after a late reading is worth its while now and then.
 
 import msgspec
 
-SOON = 4
-"""Ticks: what is late by less is folded anew as it should be, however often."""
+PROMPT_TICKS = 4
+"""Readings late by fewer ticks are folded anew at once, however often they come."""
 
-PAID = 4
-"""Ticks that may be folded anew for each tick that incident time goes on, in the long run."""
+REFOLDED_PER_TICK = 4
+"""Ticks that may be folded anew for each tick of incident time, in the long run: what leaves the bucket."""
 
-OWED = 60
-"""Ticks folded anew beyond that until there is a hurry: a whole lag, as when a gateway comes back."""
+BACKLOG_TICKS = 60
+"""Ticks folded anew beyond that before there is a hurry: a whole lag, as when a gateway comes back."""
 
-FOLLOWED = 2
+FOLLOWED_PER_TICK = 2
 """Ticks by which the sure chain follows for each tick that incident time goes on."""
 
 
 class CatchUp(msgspec.Struct, array_like=True):
-    """A fold over ticks: of each reading's, and of incident time. It knows nothing of what was asked when.
+    """A leaky bucket of ticks folded anew: filled by late readings, emptied as incident time goes on.
+
+    It is a function of these alone, not of when anything was asked.
 
     Attributes:
         now: tick of incident time; None before the first reading.
-        again: ticks that what came late since `now` began has to have folded anew.
-        owed: ticks folded anew so far, less what is paid, and at most twice `OWED`.
+        pending: ticks that what came late since `now` began has to have folded anew.
+        backlog: ticks folded anew so far, less what is paid, and at most twice `BACKLOG_TICKS`.
         front: in a hurry, the tick up to which the sure chain goes; None: there is no hurry.
         since: where the chain that is shown leaves the sure one.
         until: up to which tick it was folded in a hurry.
     """
 
     now: int | None = None
-    again: int = 0
-    owed: int = 0
+    pending: int = 0
+    backlog: int = 0
     front: int | None = None
     since: int = 0
     until: int = 0
 
     @property
-    def on(self) -> bool:
-        """There is a hurry."""
+    def hurrying(self) -> bool:
+        """Whether there is a hurry."""
         return self.front is not None
 
-    def go_on(self, now: int, newest: int) -> None:
-        """Let incident time be at tick `now`; `newest` is the newest that has readings."""
+    def advance(self, now: int, newest: int) -> None:
+        """Move incident time to tick `now`; `newest` is the newest tick with readings."""
         passed = 0 if self.now is None else now - self.now
         self.now = now
         if not passed:
             return
-        self.owed = min(max(self.owed + self.again - PAID * passed, 0), 2 * OWED)
-        self.again = 0
+        self.backlog = min(
+            max(self.backlog + self.pending - REFOLDED_PER_TICK * passed, 0), 2 * BACKLOG_TICKS
+        )
+        self.pending = 0
         if self.front is not None:
-            self.front += FOLLOWED * passed
+            self.front += FOLLOWED_PER_TICK * passed
             if self.front >= newest:
                 self.front = None
 
-    def comes(self, tick: int, newest: int) -> bool:
-        """Take note of a reading's tick; `newest` is the newest that had readings.
+    def note_reading(self, tick: int, newest: int) -> bool:
+        """Note the tick of a reading that has come; `newest` is the newest tick that had readings.
 
         Returns:
-            The chain that is shown begins anew.
+            Whether the chain that is shown is to begin anew.
         """
-        if tick > newest - SOON:
+        if tick > newest - PROMPT_TICKS:
             return False
-        self.again = max(self.again, newest - tick)
-        if self.front is None and self.owed + self.again <= OWED:
+        self.pending = max(self.pending, newest - tick)
+        if self.front is None and self.backlog + self.pending <= BACKLOG_TICKS:
             return False
         self.front = self.since = tick - 1 if self.front is None else min(self.front, tick - 1)
-        self.until = newest - SOON
+        self.until = newest - PROMPT_TICKS
         return True

@@ -199,8 +199,8 @@ class Lag:
             now: tick of incident time, with them.
         """
         newest = self._ticks[-1] if self._ticks else tick
-        self._hurry.go_on(now, max(newest, tick))
-        if self._hurry.comes(tick, newest) or not self._hurry.on:
+        self._hurry.advance(now, max(newest, tick))
+        if self._hurry.note_reading(tick, newest) or not self._hurry.hurrying:
             self._shown = None
         self._sure.roll_back(tick)
         if self._shown is not None:
@@ -212,7 +212,7 @@ class Lag:
     def state(self) -> FusionState:
         """The filter after all readings so far; not to be changed."""
         hurry = self._hurry
-        if hurry.on and self._shown is None:
+        if hurry.hurrying and self._shown is None:
             self._extend(self._sure, hurry.since)
             ticks = self._after(hurry.since, hurry.until)
             self._shown = hurried(self._sure.state, ticks, self._readings, self._notices)
@@ -225,7 +225,7 @@ class Lag:
     def settled(self) -> FusionState | None:
         """What `state` would be if there were no hurry, which goes on; None: there is none."""
         self.state()
-        if not self._hurry.on:
+        if not self._hurry.hurrying:
             return None
         chain = Chain(self._sure.checkpoints)
         chain.extend(self._after(chain.folded), self._readings, {})

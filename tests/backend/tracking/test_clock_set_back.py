@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from backend.live import record
 from backend.live.record import RecordNode
 from backend.log.base import LoggedBatch, RecordedFrame
-from backend.tracking.clock_set_back import GoingOn, on_one_clock
+from backend.tracking.clock_set_back import MonotonicClock, on_one_clock
 from backend.tracking.fold import IncidentFold
 from estimator.measurements import Alarm, AnyReading, Displacement, Node, Status
 from estimator.trackers.base import TrackerSettings
@@ -142,7 +142,7 @@ def test_a_whole_log_is_read_on_one_clock() -> None:
 
 
 def test_a_clock_that_goes_on_is_never_put_back_by_less_than_clocks_may_be_wrong() -> None:
-    clock = GoingOn()
+    clock = MonotonicClock()
     step = [Displacement(t=1000.0, node="ff1", delta_m=(1.0, 0.0, 0.0))]
     clock.hear(1059.0, step, None)
     assert clock.hear(1000.0, step, 1059.0) == 0

@@ -18,7 +18,7 @@ from backend.recordings import export_log, import_log
 from backend.tracking.course import Course
 from backend.tracking.fold import IncidentFold
 from backend.tracking.heads import head_of
-from backend.tracking.reading import read_block
+from backend.tracking.log_blocks import read_block
 from estimator import trackers
 from estimator.measurements import Retire, Status
 from estimator.trackers.base import Tracker, TrackerSettings

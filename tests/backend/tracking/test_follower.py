@@ -18,7 +18,7 @@ from backend.tracking import follower
 from backend.tracking.fold import IncidentFold
 from backend.tracking.follower import Follower
 from backend.tracking.heads import head_of, heads
-from backend.tracking.reading import read_block
+from backend.tracking.log_blocks import read_block
 from estimator import trackers
 from estimator.measurements import AnyReading, Retire, Status
 from estimator.trackers.base import Tracker, TrackerSettings

@@ -17,7 +17,7 @@ from backend.log.incidents import IncidentStore
 from backend.log.read import SqlLogReader
 from backend.tracking.fold import IncidentFold
 from backend.tracking.heads import Head, head_of
-from backend.tracking.reading import read_block
+from backend.tracking.log_blocks import read_block
 from backend.tracking.smoothing import Smoothing
 from backend.tracking.sums_process import (
     advice_of_log,

@@ -8,7 +8,13 @@ from estimator.estimate import NodeEstimate
 from estimator.fusion.memory.state import FusionState
 from estimator.measurements import AnyReading
 from estimator.smoothing import window
-from estimator.trackers.catch_up import FOLLOWED, OWED, PAID, SOON, CatchUp
+from estimator.trackers.catch_up import (
+    BACKLOG_TICKS,
+    FOLLOWED_PER_TICK,
+    PROMPT_TICKS,
+    REFOLDED_PER_TICK,
+    CatchUp,
+)
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.walks import two_responders
 
@@ -94,30 +100,38 @@ def test_once_nothing_is_late_any_more_all_is_as_if_nothing_had_been() -> None:
 def hurry_after(lateness: list[int]) -> CatchUp:
     """A tick goes by after each of these, and then something comes so late; 0: nothing does."""
     hurry = CatchUp()
-    hurry.go_on(1000, 1000)
+    hurry.advance(1000, 1000)
     for now, late in enumerate(lateness, start=1001):
-        hurry.go_on(now, now)
+        hurry.advance(now, now)
         if late:
-            hurry.comes(now - late, now)
+            hurry.note_reading(now - late, now)
     return hurry
 
 
 @pytest.mark.parametrize(
     "lateness",
-    [[SOON - 1] * 600, [PAID] * 600, [OWED], [OWED] + [0] * (OWED // PAID) + [OWED], [SOON + 1, 0] * 300],
+    [
+        [PROMPT_TICKS - 1] * 600,
+        [REFOLDED_PER_TICK] * 600,
+        [BACKLOG_TICKS],
+        [BACKLOG_TICKS] + [0] * (BACKLOG_TICKS // REFOLDED_PER_TICK) + [BACKLOG_TICKS],
+        [PROMPT_TICKS + 1, 0] * 300,
+    ],
 )
 def test_what_is_late_now_and_then_or_by_little_is_folded_as_it_should_be(lateness: list[int]) -> None:
-    assert not hurry_after(lateness).on
+    assert not hurry_after(lateness).hurrying
 
 
-@pytest.mark.parametrize("lateness", [[2 * OWED], [OWED, OWED], [50] * 3, [2 * PAID] * 60])
+@pytest.mark.parametrize(
+    "lateness", [[2 * BACKLOG_TICKS], [BACKLOG_TICKS, BACKLOG_TICKS], [50] * 3, [2 * REFOLDED_PER_TICK] * 60]
+)
 def test_what_goes_on_coming_late_is_folded_in_a_hurry(lateness: list[int]) -> None:
-    assert hurry_after(lateness).on
+    assert hurry_after(lateness).hurrying
 
 
 def test_the_sure_chain_stays_behind_what_comes_late_and_catches_up_afterwards() -> None:
     steady = hurry_after([50] * 600)
     assert steady.front == 1600 - 51
-    following = 50 // (FOLLOWED - 1) + 1
-    assert hurry_after([50] * 600 + [0] * (following - 3)).on
-    assert not hurry_after([50] * 600 + [0] * following).on
+    following = 50 // (FOLLOWED_PER_TICK - 1) + 1
+    assert hurry_after([50] * 600 + [0] * (following - 3)).hurrying
+    assert not hurry_after([50] * 600 + [0] * following).hurrying
