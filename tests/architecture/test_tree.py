@@ -70,7 +70,7 @@ def decisions_named(path: Path) -> set[str]:
     return numbers
 
 
-@pytest.mark.parametrize("name", ["architecture.md", "decisions"])
+@pytest.mark.parametrize("name", ["../README.md", "architecture.md", "glossary.md", "decisions"])
 def test_files_and_names_that_documents_point_to_exist(name: str) -> None:
     """A reader who looks for `fusion/tick.py` or `physics.WALL_M` finds it."""
     files = [path for path in tracked() if path.suffix in CODE]
