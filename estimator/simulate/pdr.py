@@ -37,7 +37,7 @@ class PdrUnit:
 
 
 @dataclass(frozen=True, slots=True)
-class Dead:
+class DeadReckoning:
     """What a unit reckoned: kept whole, so that reports may be merged over a radio gap.
 
     Attributes:
@@ -53,7 +53,7 @@ class Dead:
     start_s: float
 
 
-def reckon(truth: TrueTrack, unit: PdrUnit, rng: np.random.Generator) -> Dead:
+def reckon(truth: TrueTrack, unit: PdrUnit, rng: np.random.Generator) -> DeadReckoning:
     """What `unit` on a walker with `truth` reports.
 
     The frame's error ψ starts at a draw of `heading_sigma_rad` and drifts by bias and random walk;
@@ -82,24 +82,26 @@ def reckon(truth: TrueTrack, unit: PdrUnit, rng: np.random.Generator) -> Dead:
     sigma = np.where(np.linalg.norm(true, axis=1) < REST_M, unit.rest_noise_m, unit.noise_m)
     delta = delta / unit.scale + rng.normal(0.0, 1.0, (n, 3)) * sigma[:, None]
     heading = truth.heading_at(ends) - psi + rng.normal(0.0, unit.heading_noise_rad, n)
-    return Dead(ends, delta, heading, float(truth.t_s[0]))
+    return DeadReckoning(ends, delta, heading, float(truth.t_s[0]))
 
 
 def displacements(
-    node: str, dead: Dead, silent: tuple[float, float] = (np.inf, np.inf)
+    node: str, reckoned: DeadReckoning, silent: tuple[float, float] = (np.inf, np.inf)
 ) -> list[Displacement]:
     """The readings of a unit.
 
     Args:
         node: the unit.
-        dead: what it reckoned.
+        reckoned: see `reckon`.
         silent: from when to when (s) its radio is dead; what it walked then comes as one displacement
             with `from_t` when the radio is back.
     """
     readings = []
-    since = dead.start_s
+    since = reckoned.start_s
     pending = np.zeros(3)
-    for t, delta, heading in zip(dead.t_s.tolist(), dead.delta_m, dead.heading_rad.tolist(), strict=True):
+    for t, delta, heading in zip(
+        reckoned.t_s.tolist(), reckoned.delta_m, reckoned.heading_rad.tolist(), strict=True
+    ):
         pending = pending + delta
         if silent[0] <= t < silent[1]:
             continue

@@ -156,7 +156,8 @@ class Chain:
         """
         gradient = self.reduce(mend)
         fixed = solve(self._cholesky, gradient)
-        self.promised = 0.5 * (float(gradient @ fixed) + sum(strand.eased for strand in self.strands))
+        decrement = sum(strand.newton_decrement for strand in self.strands)
+        self.promised = 0.5 * (float(gradient @ fixed) + decrement)
         steps = np.zeros((self._length, self.width))
         found = self.each(lambda strand: strand.substitute(fixed[strand.group.lasting]))
         for strand, own in zip(self.strands, found, strict=True):

@@ -44,7 +44,7 @@ class Strand:
         wide: B and the gradient of the keyframes beside it, k × n × (s + 1).
         corner: C, s × s.
         corner_gradient: of the border, s.
-        eased: gᵀ D⁻¹ g of the keyframes eliminated so far, as each one's was by then.
+        newton_decrement: gᵀ D⁻¹ g of the keyframes eliminated so far, each one's as it was by then.
     """
 
     def __init__(self, length: int, group: Group) -> None:
@@ -56,7 +56,7 @@ class Strand:
         self.wide: Array = np.zeros((length, width, border + 1))
         self.corner: Array = np.zeros((border, border))
         self.corner_gradient: Array = np.zeros(border)
-        self.eased = 0.0
+        self.newton_decrement = 0.0
         self._done = 0
 
     @property
@@ -131,7 +131,7 @@ class Strand:
                     raise ValueError("the normal equations of the incident are not positive definite")
                 self.diagonal[at] = mended(self.diagonal[at])
                 mended_at = at
-        self.eased += take_off(self._done, until, self.wide, self.corner, self.corner_gradient)
+        self.newton_decrement += take_off(self._done, until, self.wide, self.corner, self.corner_gradient)
         self._done = until
 
     def log_determinants(self) -> Array:

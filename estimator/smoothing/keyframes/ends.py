@@ -215,7 +215,7 @@ def supports_of(
 
 
 class Ground(NamedTuple):
-    """All that the places of readings in a window follow from.
+    """What places the ends of readings in a window: its nodes, keyframes and displacement sums.
 
     Attributes:
         nodes: what each node of the ledger is.
@@ -233,7 +233,7 @@ class Ground(NamedTuple):
 
 
 def ground_of(layout: Layout) -> Ground:
-    """All that the places of readings in a window follow from."""
+    """The `Ground` of a window, as arrays for compiled loops."""
     units = [(walk.number, walk.way) for walk in layout.walks if walk.way is not None]
     ways = ways_of([number for number, _ in units], [way for _, way in units])
     return Ground(nodes_of(layout), layout.grid, layout.times, layout.spans, ways)
