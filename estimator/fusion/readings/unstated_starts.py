@@ -60,7 +60,9 @@ def _begun(state: FusionState, reading: Displacement) -> Displacement | None:
         state.say("conflict", reading.t, reading.node, text, once=f"copies of {reading.node}")
         state.count("not_fused")
         return None
-    period_s, losing, from_t = cadence.period_s, 0.0, None
+    # No period is shorter than the shortest time between two reports.
+    soon = since_s <= MORE * min(cadence.spans_s, default=math.inf)
+    period_s, losing, from_t = None if soon else cadence.period_s, 0.0, None
     left_out = period_s is not None and since_s > MORE * period_s and is_whole(since_s / period_s)
     if period_s is not None and left_out and (cadence.stands or walks_on(cadence, told, period_s)):
         odds = odds_of_loss(cadence, told, period_s)
