@@ -11,6 +11,7 @@ from tests.running import eventually
 FIRST_CREW = "#56b4e9"
 SECOND_CREW = "#e69f00"
 THIRD_CREW = "#009e73"
+UAV = "#aab2ba"
 
 _PIXELS = """(canvas, {colour, tolerance}) => {
   const wanted = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
@@ -138,3 +139,14 @@ class MapSeen:
         found = eventually(still, every_s=0.3)
         assert isinstance(found, Pixels)
         return found
+
+    def is_under_a_button(self, mark: Pixels) -> bool:
+        """Whether something else than the map is met by a finger in the middle of a mark, or at its edges."""
+        met: list[str] = self.page.get_by_test_id("map").evaluate(
+            """(map, places) => {
+              const {left, top} = map.getBoundingClientRect();
+              return places.map(([x, y]) => document.elementFromPoint(left + x, top + y)?.tagName);
+            }""",
+            [[x, y] for x in (mark.left, mark.x, mark.right) for y in (mark.top, mark.y, mark.bottom)],
+        )
+        return set(met) != {"CANVAS"}

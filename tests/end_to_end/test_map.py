@@ -4,7 +4,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from tests.end_to_end.canvas import FIRST_CREW, SECOND_CREW, THIRD_CREW
+from tests.end_to_end.canvas import FIRST_CREW, SECOND_CREW, THIRD_CREW, UAV
 from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import LEVELS, Reading, alarm, base, heard, responder, step
 from tests.running import Post, Server, eventually
@@ -242,3 +242,40 @@ def test_under_the_storey_buttons_the_map_answers_a_finger_and_people_have_its_w
     # over the map it is lower, and who is beside the buttons on the right keeps clear of them.
     assert second.x - first.x > 1.3 * 294
     assert commander.map_answers_under_the_storeys
+
+
+def test_the_map_is_as_large_again_once_what_was_told_over_it_has_gone(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    south, north = responder(T0, "south", "A", [0, 0, 0]), responder(T0, "north", "B", [0, 40, 0])
+    heard(post, incident, base(T0), south, north)
+    commander.sits_at_a_tablet()
+    commander.opens(server.url, incident)
+
+    def apart() -> float:
+        return commander.settled_mark(FIRST_CREW).y - commander.settled_mark(SECOND_CREW).y
+
+    before = apart()
+    heard(post, incident, alarm(T0 + 1, "south", text="Stairs have come down behind us. " * 6))
+    eventually(lambda: commander.banners)
+    assert apart() < 0.9 * before
+    commander.acknowledges()
+    commander.clears()
+    eventually(lambda: not commander.banners)
+    assert apart() == pytest.approx(before, abs=2)
+
+
+def test_a_uav_that_would_come_to_lie_under_a_button_is_seen_beside_it(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    crews = responder(T0, "ff1", "A", [0, 0, 0]), responder(T0, "ff2", "B", [60, 0, 0])
+    heard(post, incident, base(T0), *crews)
+    commander.sits_at_a_tablet()
+    commander.opens(server.url, incident)
+    before = commander.settled_mark(SECOND_CREW).x - commander.settled_mark(FIRST_CREW).x
+    heard(post, incident, responder(T0, "drone", "U", [66, -14, 12]) | {"role": "uav"})
+    assert not commander.is_under_a_button(commander.settled_mark(UAV))
+    after = commander.settled_mark(SECOND_CREW).x - commander.settled_mark(FIRST_CREW).x
+    assert after > 0.75 * before

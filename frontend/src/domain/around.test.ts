@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { boundsAround, type PlacedNode, toBeSeen } from "./around";
+import { around, boundsAround, type PlacedNode } from "./around";
 import { K95 } from "./ellipse";
 import { aNode, pictureWith } from "./samples";
 import type { Covariance, FrameNode } from "./types";
@@ -32,14 +32,17 @@ test("of radios the places count, and of nobody there is no box", () => {
   expect(boundsAround([])).toBeNull();
 });
 
-test("a UAV counts where it is chosen or alone, who is out or placed nowhere never", () => {
-  const seen = (selected: string | null, ...nodes: FrameNode[]) =>
-    toBeSeen(pictureWith(...nodes), selected).map(({ node }) => node);
+test("a UAV counts where it is chosen or alone, else beside; who is out or placed nowhere never", () => {
+  const on = (selected: string | null, ...nodes: FrameNode[]) => {
+    const { seen, beside } = around(pictureWith(...nodes), selected);
+    return [seen.map(({ node }) => node), beside.map(({ node }) => node)];
+  };
   const uav = aNode({ node: "uav", role: "uav" });
   const out = aNode({ node: "out", status: "retired" });
   const nowhere = aNode({ node: "nowhere", position_m: null });
   const inside = aNode({ node: "inside" });
-  expect(seen(null, uav, out, nowhere, inside)).toEqual(["inside"]);
-  expect(seen("uav", uav, inside)).toEqual(["uav", "inside"]);
-  expect(seen(null, uav, out)).toEqual(["uav"]);
+  expect(on(null, uav, out, nowhere, inside)).toEqual([["inside"], ["uav"]]);
+  expect(on("uav", uav, inside)).toEqual([["uav", "inside"], []]);
+  expect(on(null, uav, out)).toEqual([["uav"], []]);
+  expect(on(null)).toEqual([[], []]);
 });

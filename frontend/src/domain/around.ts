@@ -8,13 +8,22 @@ export type PlacedNode = Pick<FrameNode, "node" | "role" | "covariance_m2"> & {
   readonly position_m: Position;
 };
 
-/** Whom the map is fitted to: who is out is not there, and a UAV is outside, but for one that is chosen. */
-export function toBeSeen(picture: Picture | null, selected: string | null): PlacedNode[] {
+/** Who is on the map. */
+export interface Around {
+  /** Whom it is fitted to. */
+  readonly seen: readonly PlacedNode[];
+  /** Whom it is not fitted to, and who had better not lie under a button all the same. */
+  readonly beside: readonly PlacedNode[];
+}
+
+/** Who is out is not there, and a UAV is outside, but for one that is chosen, or where there is nobody else. */
+export function around(picture: Picture | null, selected: string | null): Around {
   const all = [...(picture?.nodes.values() ?? [])].flatMap(({ state }) =>
     state.position_m == null || state.status === "retired" ? [] : { ...state, position_m: state.position_m },
   );
-  const inside = all.filter(({ role, node }) => role !== "uav" || node === selected);
-  return inside.length > 0 ? inside : all;
+  const isBeside = ({ role, node }: PlacedNode) => role === "uav" && node !== selected;
+  if (all.every(isBeside)) return { seen: all, beside: [] };
+  return { seen: all.filter((node) => !isBeside(node)), beside: all.filter(isBeside) };
 }
 
 /** The box around the marks of nodes; null where there are none. */

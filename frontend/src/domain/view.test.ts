@@ -98,8 +98,11 @@ describe("fitting beside the buttons on the map", () => {
   const tablet = views.resize(views.FIRST_VIEW, 704, 604);
   const usual = views.marginsOf(tablet);
   const choices = views.narrowerMargins(tablet, usual);
-  const best = (bounds: views.Bounds, hides: (fit: views.View) => boolean) =>
-    views.fittedFreely(tablet, bounds, choices, (seen) => !hides(seen));
+  const best = (bounds: views.Bounds, hides: (fit: views.View) => boolean) => {
+    const fit = views.fittedFreely(tablet, bounds, choices, (seen) => !hides(seen));
+    if (fit === null) throw new Error("there is none");
+    return fit;
+  };
   const house: views.Bounds = { west_m: 0, east_m: 60, south_m: 0, north_m: 20 };
 
   test("a long house is shown almost twice as large where nobody in it lies under a button", () => {
@@ -113,8 +116,20 @@ describe("fitting beside the buttons on the map", () => {
     expect(views.toScreen(seen, 60, 20)[0]).toBeCloseTo(704 - 130);
   });
 
-  test("where nobody could be kept clear of them, the usual margins hold", () => {
-    expect(best(house, () => true)).toEqual(views.fitted(tablet, house, usual));
+  test("where nobody could be kept clear of them, there is none", () => {
+    expect(views.fittedFreely(tablet, house, choices, () => false)).toBeNull();
+  });
+
+  test("one who would lie under them in the middle of the map is moved, as little as will do", () => {
+    const inTheMiddle = views.toScreen(
+      best(house, () => false),
+      0,
+      0,
+    )[1];
+    const moved = best(house, (shown) => views.toScreen(shown, 0, 0)[1] > inTheMiddle - 40);
+    expect(moved.pixelsPerMetre).toBe(best(house, () => false).pixelsPerMetre);
+    expect(inTheMiddle - views.toScreen(moved, 0, 0)[1]).toBeGreaterThan(40);
+    expect(views.toScreen(moved, 0, 20)[1]).toBeGreaterThan(usual.top);
   });
 
   test("a phone has its buttons above and below, and no narrower margins", () => {

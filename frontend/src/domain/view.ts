@@ -150,17 +150,35 @@ export function fitted(view: View, bounds: Bounds, margins: Margins): View {
   return pan(centred, (margins.left - margins.right) / 2, (margins.top - margins.bottom) / 2);
 }
 
-/** The largest of the fits within one of the margins that is `free`; where none is, that within the last of them. */
+/** How far from the middle a fit may lie, as a share of the room that its bounds leave between the margins. */
+const ASIDE = [0, -0.25, 0.25, -0.5, 0.5];
+
+/** The fit within margins, then the same moved to where its bounds are inside of them as well, the least moved first. */
+function fitsWithin(view: View, bounds: Bounds, margins: Margins): View[] {
+  const fit = fitted(view, bounds, margins);
+  const room = (whole: number, edges: number, span_m: number) =>
+    Math.max(0, whole - edges - span_m * fit.pixelsPerMetre);
+  const x = room(view.width, margins.left + margins.right, bounds.east_m - bounds.west_m);
+  const y = room(view.height, margins.top + margins.bottom, bounds.north_m - bounds.south_m);
+  return ASIDE.flatMap((share) => (share === 0 ? [fit] : [pan(fit, 0, share * y), pan(fit, share * x, 0)]));
+}
+
+/**
+ * The largest of the fits within one of the margins that is `free`, as near to the middle as it can lie; null where
+ * none is.
+ */
 export function fittedFreely(
   view: View,
   bounds: Bounds,
   margins: readonly Margins[],
   free: (fit: View) => boolean,
-): View {
-  const fits = margins.map((room) => fitted(view, bounds, room));
-  return fits
-    .filter(free)
-    .reduce((most, fit) => (fit.pixelsPerMetre > most.pixelsPerMetre ? fit : most), fits.at(-1) ?? view);
+): View | null {
+  return (
+    margins
+      .flatMap((room) => fitsWithin(view, bounds, room))
+      .sort((a, b) => b.pixelsPerMetre - a.pixelsPerMetre)
+      .find(free) ?? null
+  );
 }
 
 /**

@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
-import { FIRST_VIEW, marginsOf, narrowerMargins, resize, toScreen } from "../domain/view";
-import { fittedClear, isAnybodyCovered, isCovered } from "./covered";
+import { FIRST_VIEW, fitted, marginsOf, narrowerMargins, resize, toScreen } from "../domain/view";
+import { coverage, fittedClear, isAnybodyCovered, isCovered } from "./covered";
 
 const TABLET = resize(FIRST_VIEW, 704, 604);
 const MARGINS = narrowerMargins(TABLET, marginsOf(TABLET));
@@ -35,7 +35,7 @@ test.each([
     south_m: Math.min(...n),
     north_m: Math.max(...n),
   };
-  const fit = fittedClear(TABLET, crew, bounds, MARGINS, BUTTONS);
+  const fit = fittedClear(TABLET, crew, [], bounds, MARGINS, BUTTONS);
   expect(isAnybodyCovered(crew, fit, BUTTONS, 13)).toBe(false);
   for (const { position_m } of crew) {
     const [x, y] = toScreen(fit, position_m[0], position_m[1]);
@@ -46,6 +46,36 @@ test.each([
 test("a corridor has the width of the map where it runs between the buttons", () => {
   const crew = at([0, 0], [60, 0]);
   const bounds = { west_m: 0, east_m: 60, south_m: 0, north_m: 0 };
-  const fit = fittedClear(TABLET, crew, bounds, MARGINS, BUTTONS);
+  const fit = fittedClear(TABLET, crew, [], bounds, MARGINS, BUTTONS);
   expect(fit.pixelsPerMetre).toBeCloseTo((704 - 70 - 130) / 60);
+});
+
+test("a UAV lies under no button either, and people are hardly smaller for it", () => {
+  const [crew, uav] = [at([0, 0], [60, 0]), at([66, -14])];
+  const bounds = { west_m: 0, east_m: 60, south_m: 0, north_m: 0 };
+  const without = fittedClear(TABLET, crew, [], bounds, MARGINS, BUTTONS);
+  expect(isAnybodyCovered(uav, without, BUTTONS, 13)).toBe(true);
+  const fit = fittedClear(TABLET, crew, uav, bounds, MARGINS, BUTTONS);
+  expect(coverage(crew, uav, fit, BUTTONS, 13)).toBe(0);
+  expect(fit.pixelsPerMetre).toBeGreaterThan(0.8 * without.pixelsPerMetre);
+});
+
+test("people are not made much smaller for a UAV", () => {
+  const [crew, column] = [
+    at([0, 0], [60, 0]),
+    at(...Array.from({ length: 31 }, (_, i): [number, number] => [69, 60 - 4 * i])),
+  ];
+  const bounds = { west_m: 0, east_m: 60, south_m: 0, north_m: 0 };
+  const fit = fittedClear(TABLET, crew, column, bounds, MARGINS, BUTTONS);
+  expect(fit).toEqual(fittedClear(TABLET, crew, [], bounds, MARGINS, BUTTONS));
+  expect(coverage(crew, column, fit, BUTTONS, 13)).toBe(1);
+  expect(coverage(column, crew, fit, BUTTONS, 13)).toBe(2);
+});
+
+test("where nobody can be kept clear of them, the usual margins hold", () => {
+  const crew = at([0, 0], [60, 0]);
+  const bounds = { west_m: 0, east_m: 60, south_m: 0, north_m: 0 };
+  const everywhere = [{ x: 0, y: 0, width: 704, height: 604 }];
+  const fit = fittedClear(TABLET, crew, [], bounds, MARGINS, everywhere);
+  expect(fit).toEqual(fitted(TABLET, bounds, marginsOf(TABLET)));
 });

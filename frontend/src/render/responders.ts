@@ -61,10 +61,12 @@ function draw(context: CanvasRenderingContext2D, scene: Scene, { node, x, y, els
   }
   context.setLineDash([]);
   context.fillStyle = gone ? scene.palette.ink : mark.ink;
-  context.font = "700 11px system-ui, sans-serif";
+  // A triangle is as wide as its letters near its foot only.
+  const [letters_px, lower] = shape === "uav" ? [9, 5] : [11, 0.5];
+  context.font = `700 ${letters_px}px system-ui, sans-serif`;
   context.textAlign = "center";
   context.textBaseline = "middle";
-  context.fillText(status === "lost" ? "?" : mark.letters, x, y + 0.5);
+  context.fillText(status === "lost" ? "?" : mark.letters, x, y + lower);
 }
 
 /** Live is round, stale a diamond, lost a square; a UAV is a triangle that points up. `wider` by some pixels. */
