@@ -226,4 +226,4 @@ class Channel:
 
 def _rest(frame: Frame) -> tuple[object, ...]:
     """What of a frame does not stand in its nodes, but for the moment."""
-    return frame.seq, frame.alarms, frame.notices, frame.set_aside
+    return frame.seq, frame.alarms, frame.notices, frame.set_aside, frame.clocks

@@ -5,6 +5,7 @@ from typing import Any, Literal, cast
 
 import msgspec
 
+from backend.live.record import ClockOf
 from estimator.estimate import Covariance6, Vector3
 from estimator.measurements.node import Role
 from estimator.measurements.status import AlarmKind, AlarmState
@@ -129,6 +130,20 @@ class FrameAside(msgspec.Struct, frozen=True, kw_only=True):
     text: str
 
 
+class FrameClock(msgspec.Struct, frozen=True, kw_only=True):
+    """A clock that is behind: whoever is heard by it seems to have been heard long ago, or is not followed.
+
+    Attributes:
+        gateway: by which the readings come.
+        behind_s: by how much it is behind the server's (s).
+        clock_of: the gateway's own, or that of the units which it hears.
+    """
+
+    gateway: str
+    behind_s: float
+    clock_of: ClockOf
+
+
 class Frame(msgspec.Struct, frozen=True, kw_only=True):
     """The picture of an incident at one moment.
 
@@ -142,6 +157,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True):
         alarms: alarms that stand.
         notices: the newest notices of the estimator, and why somebody who has no position comes too late.
         set_aside: who is heard, and not live on the map, because none of its readings can be used.
+        clocks: those that are behind, of gateways that are heard.
     """
 
     incident: str
@@ -153,6 +169,7 @@ class Frame(msgspec.Struct, frozen=True, kw_only=True):
     alarms: tuple[FrameAlarm, ...]
     notices: tuple[FrameNotice, ...]
     set_aside: tuple[FrameAside, ...]
+    clocks: tuple[FrameClock, ...]
 
 
 class FrameMessage(Frame, frozen=True, kw_only=True, tag_field="type", tag="frame"):
@@ -247,6 +264,7 @@ def message(
         alarms=frame.alarms,
         notices=frame.notices,
         set_aside=frame.set_aside,
+        clocks=frame.clocks,
     )
 
 

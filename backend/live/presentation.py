@@ -6,7 +6,16 @@ second, so that a fix ages on the screen whatever has happened to the process th
 
 from collections.abc import Iterator, Sequence
 
-from backend.live.frame import AirState, Frame, FrameAlarm, FrameAside, FrameNode, FrameNotice, Status
+from backend.live.frame import (
+    AirState,
+    Frame,
+    FrameAlarm,
+    FrameAside,
+    FrameClock,
+    FrameNode,
+    FrameNotice,
+    Status,
+)
 from backend.live.record import PictureRecord, RecordNode, RecordNotice
 from backend.log.incident import Incident, IncidentSettings
 from estimator.estimate import Covariance6
@@ -186,6 +195,11 @@ def present(record: PictureRecord, seq: int, now: float, incident: Incident) -> 
             for notice in _notices_shown(record)
         ),
         set_aside=tuple(_set_aside_at(record, now, incident.settings)),
+        clocks=tuple(
+            FrameClock(gateway=clock.gateway, behind_s=clock.behind_s, clock_of=clock.clock_of)
+            for clock in record.clocks
+            if 0.0 <= now - clock.t <= incident.settings.lost_after_s
+        ),
     )
 
 

@@ -1,6 +1,7 @@
 """The picture of an incident as the worker makes it: what is known, whenever it is looked at."""
 
 import zlib
+from typing import Literal
 
 import msgspec
 
@@ -128,6 +129,25 @@ class RecordAside(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     crew: str | None = None
 
 
+ClockOf = Literal["gateway", "units"]
+
+
+class RecordClock(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
+    """A clock that is behind: whoever is heard by it seems to have been heard long ago.
+
+    Attributes:
+        gateway: by which the readings came.
+        t: when the newest of them came, by the incident's clock, Unix seconds.
+        behind_s: by how much it is behind the server's (s).
+        clock_of: the gateway's own, or that of the units which it hears.
+    """
+
+    gateway: str
+    t: float
+    behind_s: float
+    clock_of: ClockOf
+
+
 class PictureRecord(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     """What is known of an incident after a log entry, apart from the moment at which it is looked at.
 
@@ -137,6 +157,7 @@ class PictureRecord(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
         alarms: alarms that stand, oldest first.
         notices: the newest notices, oldest first.
         set_aside: whose readings were set aside, all of them, the longest silent first.
+        clocks: those that are behind.
     """
 
     t: float | None = None
@@ -144,6 +165,7 @@ class PictureRecord(msgspec.Struct, frozen=True, kw_only=True, array_like=True):
     alarms: tuple[RecordAlarm, ...] = ()
     notices: tuple[RecordNotice, ...] = ()
     set_aside: tuple[RecordAside, ...] = ()
+    clocks: tuple[RecordClock, ...] = ()
 
 
 EMPTY = PictureRecord()

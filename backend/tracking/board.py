@@ -7,7 +7,9 @@ import msgspec
 
 from backend.live.record import PictureRecord, RecordAlarm, RecordAside, RecordNode, RecordNotice
 from backend.log.base import LoggedBatch
+from backend.tracking import gateway_clocks
 from backend.tracking.alarms import AlarmEntry
+from backend.tracking.gateway_clocks import GatewayClock
 from backend.tracking.set_aside import after_batch
 from estimator.estimate import NodeEstimate, Notice
 from estimator.fusion.tick import names_of
@@ -69,6 +71,7 @@ class Board(msgspec.Struct):
         came_t: when those were heard of last of whom readings told before their time, Unix seconds.
         retired: when each node was last retired, Unix seconds, and why, where that was said.
         aside: who was heard without a reading that can be used since, by name.
+        clocks: how late each gateway's batches come, by gateway.
     """
 
     nodes: dict[str, NodeBoard] = msgspec.field(default_factory=dict)
@@ -77,6 +80,7 @@ class Board(msgspec.Struct):
     came_t: dict[str, float] = msgspec.field(default_factory=dict)
     retired: dict[str, tuple[float, str | None]] = msgspec.field(default_factory=dict)
     aside: dict[str, RecordAside] = msgspec.field(default_factory=dict)
+    clocks: dict[str, GatewayClock] = msgspec.field(default_factory=dict)
 
     def fold(self, readings: Iterable[AnyReading], known_t: float = math.inf) -> None:
         """Take readings in, in their order.
@@ -111,6 +115,10 @@ class Board(msgspec.Struct):
         """
         usable = {name for reading in readings for name in names_of(reading)}
         self.aside = after_batch(self.aside, batch, came_t, usable)
+
+    def hear_clock(self, batch: LoggedBatch, readings: Sequence[AnyReading], came_t: float) -> None:
+        """Note how late a batch of an incident that goes by the server's clock has come."""
+        self.clocks = gateway_clocks.after_batch(self.clocks, batch, readings, came_t)
 
     def _came(self, reading: AnyReading, known_t: float) -> None:
         """Note when a node whose clock is ahead was heard of."""
@@ -193,6 +201,7 @@ class Board(msgspec.Struct):
             alarms=tuple(standing),
             notices=tuple(self.notices),
             set_aside=tuple(self.aside.values()),
+            clocks=tuple(gateway_clocks.behind(self.clocks)),
         )
 
     def _joined(self, estimate: NodeEstimate) -> RecordNode:

@@ -27,6 +27,7 @@ _TIMES = {
     "alarms": ("t",),
     "notices": ("t",),
     "set_aside": ("t", "since_t"),
+    "clocks": ("t",),
 }
 
 

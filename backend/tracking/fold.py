@@ -18,7 +18,7 @@ from estimator.estimate import Relative
 from estimator.measurements import Alarm, AnyReading
 from estimator.trackers.base import Tracker, TrackerSettings
 
-VERSION = 6
+VERSION = 7
 
 STOOD_S = 2.0
 """What was shown for longer is recorded as it was, whatever comes later. Gateways post once a second or more
@@ -148,6 +148,9 @@ class IncidentFold:
             self._picture = None
             self.seq, self.received = batch.seq, batch.received
             yield row
+        if self._live:
+            self._board.hear_clock(batch, readings, came_t)
+            self._picture = None
         if batch.rejected:
             if not self._live:
                 came_t = _first_known(self.newest_t, batch.sent, batch.received)

@@ -1,5 +1,6 @@
 """Who is heard and has no dot is told of, with the reason."""
 
+import itertools
 import time
 from pathlib import Path
 
@@ -109,3 +110,31 @@ def test_however_far_the_board_is_turned_who_is_not_followed_stays_in_view(
     for _ in range(3):
         assert commander.faults_of_access(axe) == []
         commander.switches_theme()
+
+
+def test_a_gateway_whose_clock_is_an_hour_behind_is_told_of_with_what_to_do_until_it_is_set(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident(clock="live")
+    now = time.time()
+    heard(post, incident, base(now), responder(now, "right", "A", [2, 2, 0]))
+    batches = itertools.count()
+
+    def posts(behind_s: float) -> None:
+        t = time.time() - behind_s
+        slow = [responder(t, "slow", "B", [5, 2, 0]), step(t, "slow", [0.1, 0, 0])]
+        post.telemetry(incident, f"slow-{next(batches)}", slow, gateway="ladder-3")
+
+    def told() -> str:
+        posts(3600)
+        return commander.clocks_behind
+
+    posts(3600)
+    commander.opens(server.url, incident)
+    eventually(told, within_s=40, every_s=1)
+    assert commander.clocks_behind.startswith(
+        "Clock of gateway ladder-3 is 60 min behind: set it. Until then"
+    )
+    posts(0)
+    commander.sees("SLOW", "Live")
+    eventually(lambda: not commander.clocks_behind, within_s=5)

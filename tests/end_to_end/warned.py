@@ -92,6 +92,12 @@ class WarningsSeen:
         return [" ".join(text.split()) for text in found]
 
     @property
+    def clocks_behind(self) -> str:
+        """What is said of clocks that are behind; nothing where none is."""
+        said = self.page.get_by_test_id("clocks-behind")
+        return " ".join(said.inner_text().split()) if said.count() else ""
+
+    @property
     def not_followed_in_view(self) -> bool:
         """Whether that is seen, however far the board is turned."""
         said, board = (

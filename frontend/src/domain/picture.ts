@@ -19,6 +19,8 @@ export interface Picture {
   readonly notices: FrameMessage["notices"];
   /** Who is heard, and not live on the map, because nothing of it can be used. */
   readonly setAside: FrameMessage["set_aside"];
+  /** Clocks that are behind, of gateways that are heard. */
+  readonly clocks: FrameMessage["clocks"];
   /** The incident's estimator could not go on: nothing that is reported since is in the picture, no alarm either. */
   readonly standsStill: boolean;
   /** What was last reported is not in the picture yet, and has not been for seconds: an alarm may be missing. */
@@ -46,6 +48,7 @@ export function pictureOf(frame: FrameMessage): Picture {
     alarms: frame.alarms,
     notices: frame.notices,
     setAside: frame.set_aside,
+    clocks: frame.clocks,
     standsStill: standsStill(frame),
     behind: isBehind(frame),
   };
@@ -64,6 +67,7 @@ export function withDelta(picture: Picture, delta: DeltaMessage): Picture {
     alarms: delta.alarms,
     notices: delta.notices,
     setAside: delta.set_aside,
+    clocks: delta.clocks,
     standsStill: standsStill(delta),
     behind: isBehind(delta),
   };

@@ -46,7 +46,7 @@ export const A_BREAK = { code: "estimator_failed", t: NOON, text: "It broke.", n
 /** What it says when something reported has not been in the picture for seconds. */
 export const A_DELAY = { code: "estimator_behind", t: NOON, text: "It is behind.", node: null } as const;
 
-const NOTHING_ELSE = { alarms: [], notices: [], set_aside: [] };
+const NOTHING_ELSE = { alarms: [], notices: [], set_aside: [], clocks: [] };
 
 export function aFrame(nodes: FrameNode[], over: Partial<FrameMessage> = {}): FrameMessage {
   const times = { t: NOON, clock_t: NOON, newest_t: NOON };

@@ -933,6 +933,7 @@ export interface components {
          *             alarms: alarms that stand.
          *             notices: the newest notices of the estimator, and why somebody who has no position comes too late.
          *             set_aside: who is heard, and not live on the map, because none of its readings can be used.
+         *             clocks: those that are behind, of gateways that are heard.
          */
         Frame: {
             incident: string;
@@ -944,6 +945,7 @@ export interface components {
             alarms: components["schemas"]["FrameAlarm"][];
             notices: components["schemas"]["FrameNotice"][];
             set_aside: components["schemas"]["FrameAside"][];
+            clocks: components["schemas"]["FrameClock"][];
         };
         /**
          * FrameNode
@@ -1083,6 +1085,21 @@ export interface components {
             text: string;
         };
         /**
+         * FrameClock
+         * @description A clock that is behind: whoever is heard by it seems to have been heard long ago, or is not followed.
+         *
+         *         Attributes:
+         *             gateway: by which the readings come.
+         *             behind_s: by how much it is behind the server's (s).
+         *             clock_of: the gateway's own, or that of the units which it hears.
+         */
+        FrameClock: {
+            gateway: string;
+            behind_s: number;
+            /** @enum {unknown} */
+            clock_of: "gateway" | "units";
+        };
+        /**
          * FrameMessage
          * @description A whole frame: the first message, and again where deltas would have been missed.
          */
@@ -1101,6 +1118,7 @@ export interface components {
             alarms: components["schemas"]["FrameAlarm"][];
             notices: components["schemas"]["FrameNotice"][];
             set_aside: components["schemas"]["FrameAside"][];
+            clocks: components["schemas"]["FrameClock"][];
         };
         /**
          * DeltaMessage
@@ -1121,6 +1139,7 @@ export interface components {
             alarms: components["schemas"]["FrameAlarm"][];
             notices: components["schemas"]["FrameNotice"][];
             set_aside: components["schemas"]["FrameAside"][];
+            clocks: components["schemas"]["FrameClock"][];
         };
         /**
          * HeartbeatMessage

@@ -11,7 +11,15 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from backend.live.presentation import covariance_at, now_of, present, status_of
-from backend.live.record import EMPTY, PictureRecord, RecordAlarm, RecordAside, RecordNode, RecordNotice
+from backend.live.record import (
+    EMPTY,
+    PictureRecord,
+    RecordAlarm,
+    RecordAside,
+    RecordClock,
+    RecordNode,
+    RecordNotice,
+)
 from backend.log.incident import Incident, IncidentSettings
 from estimator.measurements.node import Role
 
@@ -208,3 +216,15 @@ def test_now_is_the_servers_clock_or_the_newest_reading(incident: Make) -> None:
     assert now_of(incident(clock="recorded"), EMPTY, 500.0) == 0.0
     assert now_of(incident(state="closed", closed=200.0), record, 500.0) == 200.0
     assert not math.isnan(now_of(incident(), EMPTY, 0.0))
+
+
+def test_a_clock_that_is_behind_is_told_while_its_gateway_is_heard(incident: Make) -> None:
+    clock = RecordClock(gateway="engine-7", t=150.0, behind_s=3600.0, clock_of="gateway")
+    record = PictureRecord(t=100.0, clocks=(clock,))
+
+    def told(now: float) -> list[tuple[str, float]]:
+        return [(known.gateway, known.behind_s) for known in present(record, 1, now, incident()).clocks]
+
+    assert told(151.0) == [("engine-7", 3600.0)]
+    assert told(149.0) == []
+    assert told(150.0 + incident().settings.lost_after_s + 1) == []
