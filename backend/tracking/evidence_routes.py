@@ -5,12 +5,14 @@ from typing import Annotated, Any
 
 import msgspec
 from fastapi import APIRouter
+from starlette.requests import Request
 from starlette.responses import Response
 
 from backend.errors import Conflict
 from backend.live.past import row_at, told_at
 from backend.log.base import LogReader
 from backend.log.incidents import IncidentStore
+from backend.tracking.asked import while_asked
 from backend.tracking.heads import head_of
 from backend.tracking.routes import NodeName, answers_with, as_json, moment
 from backend.tracking.smoothing import Smoothing
@@ -29,6 +31,7 @@ def evidence_router(incidents: IncidentStore, reader: LogReader, smoothing: Smoo
 
     @router.get("/evidence", operation_id="get_evidence", responses=answers_with("Evidence", 409, 504))
     async def evidence(
+        request: Request,
         incident: str,
         node: NodeName,
         t: Annotated[float | None, moment("of which moment, Unix seconds; the newest, without it")] = None,
@@ -43,17 +46,17 @@ def evidence_router(incidents: IncidentStore, reader: LogReader, smoothing: Smoo
         known = await asyncio.to_thread(incidents.get, incident)
         if t is not None:
             known = told_at(known, t, await asyncio.to_thread(row_at, reader, known, t))
-        found = await smoothing.evidence(head_of(known), node, t)
+        found = await while_asked(request, smoothing.evidence(head_of(known), node, t))
         if found is None:
             when = "yet" if t is None else "at that time"
             raise Conflict(f"The position of {node!r} is not decided {when}, or nobody doubts it.")
         return as_json(found)
 
     @router.get("/advice", operation_id="get_advice", responses=answers_with("Advice", 409, 504))
-    async def advice(incident: str, node: NodeName) -> Response:
+    async def advice(request: Request, incident: str, node: NodeName) -> Response:
         """What would shrink the uncertainty of a node's newest position most."""
         known = await asyncio.to_thread(incidents.get, incident)
-        found = await smoothing.advice(head_of(known), node)
+        found = await while_asked(request, smoothing.advice(head_of(known), node))
         if found is None:
             raise Conflict(f"The position of {node!r} is not decided yet, or nobody doubts it.")
         return as_json(found)

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 from fastapi import APIRouter, Query
+from starlette.requests import Request
 from starlette.responses import Response
 
 from backend.coordination.base import WebSide
@@ -17,6 +18,7 @@ from backend.live.past import frame_of, row_at
 from backend.log.base import LogReader
 from backend.log.incidents import IncidentStore
 from backend.problems import openapi_responses, reversed_span
+from backend.tracking.asked import while_asked
 from backend.tracking.heads import head_of
 from backend.tracking.smoothing import Smoothing
 from backend.tracking.tracks import live_tracks, rounded
@@ -105,6 +107,7 @@ def tracking_router(
 
     @router.get("/tracks", operation_id="get_tracks", responses=answers_with("Tracks", 504))
     async def tracks(
+        request: Request,
         incident: str,
         node: Annotated[
             str | None, Query(min_length=1, max_length=64, description="only this one; all, without it")
@@ -148,7 +151,7 @@ def tracking_router(
                 newest = int(channel.record.t), channel.record
             shown = await asyncio.to_thread(live_tracks, reader, incident, wanted, start, to, step, newest)
             return await asyncio.to_thread(_tracks_as_json, shown, decimals)
-        smoothed = await smoothing.smoothed(head_of(channel.incident))
+        smoothed = await while_asked(request, smoothing.smoothed(head_of(channel.incident)))
         chosen = {name: track for name, track in smoothed.items() if wanted is None or name in wanted}
         return await asyncio.to_thread(lambda: _tracks_as_json(_tracks(chosen, start, to, step), decimals))
 

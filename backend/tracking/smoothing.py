@@ -56,10 +56,11 @@ class Smoothing:
     def __init__(self, database_url: str) -> None:
         self._url = database_url
         self._pool: ProcessPoolExecutor | None = None
-        self._tracks: Kept[Smoothed] = Kept(KEPT)
-        self._evidence: Kept[Evidence | None] = Kept(EXPLAINED)
-        self._advice: Kept[Advice | None] = Kept(EXPLAINED)
-        self._relative: Kept[Relative | None] = Kept(EXPLAINED)
+        turn = asyncio.Lock()
+        self._tracks: Kept[Smoothed] = Kept(KEPT, turn)
+        self._evidence: Kept[Evidence | None] = Kept(EXPLAINED, turn)
+        self._advice: Kept[Advice | None] = Kept(EXPLAINED, turn)
+        self._relative: Kept[Relative | None] = Kept(EXPLAINED, turn)
         self._preparing: asyncio.Task[None] | None = None
 
     def start(self) -> asyncio.Task[None]:

@@ -5,6 +5,7 @@ import asyncio
 import pytest
 
 from backend.errors import TooSlow
+from backend.tracking import long_sums
 from backend.tracking.long_sums import Kept
 
 
@@ -28,7 +29,7 @@ class Counted:
 
 def test_asking_twice_begins_once() -> None:
     async def ask() -> None:
-        kept, slow = Kept[int](2), Counted(done=False)
+        kept, slow = Kept[int](2, asyncio.Lock()), Counted(done=False)
         asked = [asyncio.create_task(kept.get("a", 1, slow, 5.0, "This")) for _ in range(3)]
         await asyncio.sleep(0)
         slow.end.set()
@@ -40,7 +41,7 @@ def test_asking_twice_begins_once() -> None:
 
 def test_what_failed_is_begun_again() -> None:
     async def ask() -> None:
-        kept, failing = Kept[int](2), Counted(fails=True)
+        kept, failing = Kept[int](2, asyncio.Lock()), Counted(fails=True)
         for _ in range(2):
             with pytest.raises(ValueError, match="no"):
                 await kept.get("a", 1, failing, 5.0, "This")
@@ -51,7 +52,7 @@ def test_what_failed_is_begun_again() -> None:
 
 def test_what_takes_long_goes_on_and_is_found_done() -> None:
     async def ask() -> None:
-        kept, slow = Kept[int](2), Counted(done=False)
+        kept, slow = Kept[int](2, asyncio.Lock()), Counted(done=False)
         with pytest.raises(TooSlow, match=r"This takes longer than 0\.01 s; it goes on"):
             await kept.get("a", 1, slow, 0.01, "This")
         slow.end.set()
@@ -62,7 +63,7 @@ def test_what_takes_long_goes_on_and_is_found_done() -> None:
 
 def test_who_waits_for_what_was_given_up_is_told_so() -> None:
     async def ask() -> None:
-        kept, slow = Kept[int](1), Counted(done=False)
+        kept, slow = Kept[int](1, asyncio.Lock()), Counted(done=False)
         waiting = asyncio.create_task(kept.get("a", 1, slow, 5.0, "This"))
         await asyncio.sleep(0)
         assert await kept.get("b", 1, Counted(), 5.0, "That") == 1
@@ -74,7 +75,7 @@ def test_who_waits_for_what_was_given_up_is_told_so() -> None:
 
 def test_a_request_that_is_given_up_ends_without_ending_the_sum() -> None:
     async def ask() -> None:
-        kept, slow = Kept[int](1), Counted(done=False)
+        kept, slow = Kept[int](1, asyncio.Lock()), Counted(done=False)
         waiting = asyncio.create_task(kept.get("a", 1, slow, 5.0, "This"))
         await asyncio.sleep(0)
         waiting.cancel()
@@ -89,7 +90,7 @@ def test_a_request_that_is_given_up_ends_without_ending_the_sum() -> None:
 
 def test_the_sums_that_were_asked_for_longest_ago_are_given_up_first() -> None:
     async def ask() -> None:
-        kept, sums = Kept[int](2), {name: Counted() for name in "abc"}
+        kept, sums = Kept[int](2, asyncio.Lock()), {name: Counted() for name in "abc"}
         for name in "abaca":
             await kept.get(name, 1, sums[name], 5.0, "This")
         assert {name: counted.begun for name, counted in sums.items()} == {"a": 1, "b": 1, "c": 1}
@@ -101,7 +102,7 @@ def test_the_sums_that_were_asked_for_longest_ago_are_given_up_first() -> None:
 
 def test_of_a_log_that_grows_a_quick_sum_is_told_with_all_of_it() -> None:
     async def ask() -> None:
-        kept, quick = Kept[int](2), Counted(done=False)
+        kept, quick = Kept[int](2, asyncio.Lock()), Counted(done=False)
         first = asyncio.create_task(kept.get("a", 1, quick, 5.0, "This"))
         await asyncio.sleep(0)
         later = asyncio.create_task(kept.get("a", 2, quick, 5.0, "This"))
@@ -116,7 +117,7 @@ def test_of_a_log_that_grows_a_quick_sum_is_told_with_all_of_it() -> None:
 
 def test_of_a_log_that_grows_a_sum_that_takes_longer_than_anybody_waits_is_told_when_it_is_done() -> None:
     async def ask() -> None:
-        kept, slow = Kept[int](2), Counted(done=False)
+        kept, slow = Kept[int](2, asyncio.Lock()), Counted(done=False)
         for seq in (1, 2):
             with pytest.raises(TooSlow) as refused:
                 await kept.get("a", seq, slow, 0.1, "This")
@@ -129,3 +130,40 @@ def test_of_a_log_that_grows_a_sum_that_takes_longer_than_anybody_waits_is_told_
         assert await kept.get("a", 4, slow, 0.1, "This") == 2
 
     asyncio.run(ask())
+
+
+def test_a_sum_that_nobody_waits_for_when_its_turn_comes_is_not_begun() -> None:
+    async def ask() -> None:
+        turn = asyncio.Lock()
+        kept, others = Kept[int](4, turn), Kept[int](4, turn)
+        first, left, wanted = Counted(done=False), Counted(), Counted()
+        under_way = asyncio.create_task(kept.get("first", 1, first, 5.0, "This"))
+        leaving = asyncio.create_task(kept.get("left", 1, left, 5.0, "This"))
+        staying = asyncio.create_task(others.get("wanted", 1, wanted, 5.0, "That"))
+        await asyncio.sleep(0.01)
+        leaving.cancel()
+        await asyncio.sleep(0.01)
+        first.end.set()
+        assert [await under_way, await staying] == [1, 1]
+        assert (left.begun, wanted.begun) == (0, 1)
+        assert await kept.get("left", 1, left, 5.0, "This") == 1
+
+    asyncio.run(ask())
+
+
+def test_who_was_told_to_ask_again_is_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def ask(returns_within_s: float) -> int:
+        monkeypatch.setattr(long_sums, "RETURNS_WITHIN_S", returns_within_s)
+        kept, first, second = Kept[int](4, asyncio.Lock()), Counted(done=False), Counted()
+        under_way = asyncio.create_task(kept.get("first", 1, first, 5.0, "This"))
+        await asyncio.sleep(0.01)
+        with pytest.raises(TooSlow):
+            await kept.get("second", 1, second, 0.01, "That")
+        await asyncio.sleep(0.02)
+        first.end.set()
+        await under_way
+        await asyncio.sleep(0.01)
+        return second.begun
+
+    assert asyncio.run(ask(60.0)) == 1
+    assert asyncio.run(ask(0.0)) == 0
