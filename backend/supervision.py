@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import faulthandler
 import os
 import signal
 import sys
@@ -27,6 +28,10 @@ LONGEST_SILENT_S = 160.0
 given twice the time, so that one that only computes is not killed for ever."""
 
 LOOK_EVERY_S = 1.0
+
+HANGS_S = 180.0
+"""A process that has not said for so long that it goes on ends itself: later than who supervises it would end
+it, and than a database that answers nothing is given up."""
 
 
 class Child:
@@ -129,3 +134,14 @@ def end_with_parent() -> None:
         os.kill(os.getpid(), signal.SIGKILL)
 
     threading.Thread(target=watch, name="end with parent", daemon=True).start()
+
+
+def goes_on(hangs_s: float = HANGS_S) -> None:
+    """Say that this process goes on: it ends, and tells where each thread stands, unless that is said again.
+
+    Whoever runs it starts it again. No thread of Python's is needed for it, which a loop would hold up.
+
+    Args:
+        hangs_s: within so long (s).
+    """
+    faulthandler.dump_traceback_later(hangs_s, exit=True)

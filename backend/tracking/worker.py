@@ -2,6 +2,7 @@
 
 import asyncio
 import signal
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import structlog
@@ -15,6 +16,7 @@ from backend.log.base import StaleEpoch
 from backend.log.derived import SqlDerivedWriter
 from backend.log.engine import make_engine, writing
 from backend.log.read import SqlLogReader
+from backend.supervision import goes_on
 from backend.tracking.follower import Follower
 from backend.tracking.heads import Head, heads
 from estimator.warm import warm_up
@@ -50,11 +52,15 @@ def run_worker(
             process that had them still runs.
         shown_hz: how often a picture may be published, per incident.
     """
-    asyncio.run(Worker(database_url, link_address, token, holder, shown_hz).run())
+    asyncio.run(Worker(database_url, link_address, token, holder, shown_hz, goes_on).run())
 
 
 class Worker:
-    """All incidents of one process; see `run_worker`."""
+    """All incidents of one process; see `run_worker`.
+
+    Args:
+        looked: is called whenever the database has been asked and has answered, or was found to be away.
+    """
 
     def __init__(
         self,
@@ -63,7 +69,9 @@ class Worker:
         token: str,
         holder: str,
         shown_hz: float,
+        looked: Callable[[], None] | None = None,
     ) -> None:
+        self._looked = looked
         self._engine = make_engine(database_url)
         self._reader = SqlLogReader(self._engine)
         self._writer = SqlDerivedWriter(self._engine)
@@ -107,6 +115,8 @@ class Worker:
         self._link.start()
         while True:
             await self._look()
+            if self._looked is not None:
+                self._looked()
             await asyncio.sleep(POLL_S)
 
     async def _look(self) -> None:

@@ -48,6 +48,28 @@ def test_a_child_whose_parent_is_gone_ends(handler: str, code: int) -> None:
             child.kill()
 
 
+HANGS = textwrap.dedent(
+    """
+    import time
+    from backend.supervision import goes_on
+    for _ in range(4):
+        goes_on(hangs_s=1.0)
+        time.sleep(0.5)
+    print("went on", flush=True)
+    def stuck():
+        while True:
+            pass
+    stuck()
+    """
+)
+
+
+def test_a_process_that_no_longer_says_that_it_goes_on_ends_and_tells_where_it_hung() -> None:
+    done = subprocess.run([sys.executable, "-c", HANGS], capture_output=True, timeout=20.0, check=False)
+    assert (done.returncode, done.stdout) == (1, b"went on\n")
+    assert b"in stuck" in done.stderr
+
+
 async def pids_of(words: Callable[[int], int], so_many: int, tmp_path: Path) -> list[int]:
     """The first children that are seen under one supervisor."""
     seen: list[int] = []

@@ -22,7 +22,7 @@ from backend.log.incidents import IncidentStore
 from backend.log.read import SqlLogReader
 from backend.log.schema import leases
 from backend.tracking import worker as worker_module
-from backend.tracking.heads import head_of
+from backend.tracking.heads import Head, head_of
 from backend.tracking.worker import Worker
 from estimator import trackers
 from estimator.measurements import AnyReading, Retire, Status
@@ -237,6 +237,38 @@ def test_another_tracker_folds_what_the_first_broke_at(
         await switching
 
     asyncio.run(go())
+
+
+def test_a_worker_that_waits_for_a_database_for_ever_does_not_say_that_it_goes_on(
+    sqlite_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said, twice, let_go = [0], asyncio.Event(), threading.Event()
+    answers = iter([True, True, False])
+
+    def asked(*_: object) -> list[Head]:
+        if not next(answers, False):
+            let_go.wait(20.0)
+        return []
+
+    def look() -> None:
+        said[0] += 1
+        if said[0] == 2:
+            twice.set()
+
+    async def go() -> int:
+        worker = Worker(sqlite_url, None, "", "north", 10.0, look)
+        running = asyncio.create_task(worker.run())
+        await twice.wait()
+        await asyncio.sleep(4 * worker_module.POLL_S)
+        while_it_hung = said[0]
+        let_go.set()
+        signal.raise_signal(signal.SIGTERM)
+        await running
+        return while_it_hung
+
+    monkeypatch.setattr(worker_module, "heads", asked)
+    monkeypatch.setattr(worker_module, "warm_up", lambda: None)
+    assert asyncio.run(go()) == 2
 
 
 def made_with(engine: sa.Engine, incident: str) -> str | None:
