@@ -163,7 +163,7 @@ class Lag:
                     self.late[node] = self.late.get(node, 0) + 1
                     missed[node] = reading
                 continue
-            tick, now = tick_of(until_t), tick_of(self._go_on(min(until_t, known_t), reading))
+            tick, now = tick_of(until_t), tick_of(self._go_on(reading, known_t))
             if room != (tick, now):
                 room = tick, now
                 self._make_room(tick, now)
@@ -173,10 +173,13 @@ class Lag:
             text = _too_late(self.late[node], self.lag_s) + self._why_late(newest.until_t)
             self._loose.append(Notice(code="too_late", t=newest.t, node=node, text=text))
 
-    def _go_on(self, t: float, reading: AnyFolded) -> float:
-        """Let the newest epoch be no older than `t` (s), note where it leaps, and return it."""
-        before_t = self.newest_t
-        if before_t is None or t > before_t + self.lag_s:
+    def _go_on(self, reading: AnyFolded, known_t: float) -> float:
+        """Let the newest epoch be no older than that of a reading (s), note where it leaps, and return it.
+
+        Where it is no later than a clock that can be trusted, nobody is to blame for a leap: time has passed.
+        """
+        before_t, t = self.newest_t, min(reading.until_t, known_t)
+        if math.isinf(known_t) and (before_t is None or t > before_t + self.lag_s):
             self.leaps.append(Leap(names_of(reading)[0], before_t, t))
             del self.leaps[:-LEAPS_KEPT]
         self.newest_t = t if before_t is None else max(before_t, t)

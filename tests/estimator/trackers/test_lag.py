@@ -100,6 +100,15 @@ def test_a_first_reading_astray_is_named_too() -> None:
     ]
 
 
+def test_who_is_right_by_the_clock_of_who_received_it_is_not_blamed_for_what_is_late() -> None:
+    tracker = KirchhoffTracker()
+    right = Position(t=3600.0, node="uav", position_m=(0.0, 0.0, 9.0))
+    tracker.fold([right], 3600.5)
+    tracker.fold(walk(1), 3601.0)
+    (notice,) = [notice for notice in tracker.take_notices() if notice.code == "too_late"]
+    assert notice.text.endswith("came more than 60 s late and are not fused")
+
+
 def test_what_is_late_without_anybodys_leap_blames_nobody() -> None:
     astray = Position(t=4e9, node="uav", position_m=(0.0, 0.0, 9.0))
     tracker = KirchhoffTracker()
