@@ -50,7 +50,7 @@ def test_air_that_was_told_long_ago_is_said_to_be_of_then_though_its_bearer_is_l
     commander.opens(server.url, incident)
     eventually(lambda: commander.board()["WALKER"].air == "air 180 bar")
     heard(post, incident, step(T0 + 300, "walker", [1, 0, 0]))
-    eventually(lambda: commander.board()["WALKER"].air == "air was 180 bar 5 min ago")
+    eventually(lambda: commander.board()["WALKER"].air == "air was 180 bar, 5 min ago")
     assert commander.board()["WALKER"].status == "Was live"
     assert commander.cut_off() == []
     heard(post, incident, told | {"t": T0 + 301, "air_bar": 90})

@@ -49,3 +49,18 @@ def test_while_a_replay_plays_on_it_stays_one_question_about_one_moment(
     assert len(commander.asked_about) == 3
     assert len(set(commander.asked_about)) == 1
     assert commander.asked_about[0] is not None
+
+
+def test_who_asks_at_the_foot_of_the_board_sees_that_it_is_weighed(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    crew = [responder(T0, f"ff{at:02}", "A", [2 * at, 2, 0]) for at in range(12)]
+    heard(post, incident, base(T0), *crew)
+    commander.sits_at_a_tablet()
+    commander.opens(server.url, incident)
+    commander.selects("ff11")
+    commander.hears_that_it_takes_long(times=2)
+    commander.begins_to_ask_why_here()
+    eventually(lambda: commander.weighed_so_far)
+    assert commander.sees_that_it_is_weighed

@@ -57,6 +57,17 @@ class WhyAsked:
         said = self.page.get_by_test_id("so-far")
         return said.inner_text() if said.count() else ""
 
+    @property
+    def sees_that_it_is_weighed(self) -> bool:
+        """Whether what is said of it lies wholly on the board, without a finger moving that."""
+        said, board = (
+            self.page.get_by_test_id("so-far").bounding_box(),
+            self.page.get_by_test_id("board").bounding_box(),
+        )
+        assert said is not None
+        assert board is not None
+        return board["y"] <= said["y"] and said["y"] + said["height"] <= board["y"] + board["height"] + 1
+
     def is_told_what_holds(self) -> bool:
         """Whether the evidence is there."""
         return self.page.get_by_test_id("held").is_visible()

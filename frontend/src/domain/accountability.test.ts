@@ -55,7 +55,7 @@ test("air that was told long ago is of then, though its bearer is live, and told
       new Map(),
     )[0]?.rows[0];
   expect(airOf(NOON - 30)).toMatchObject({ air: "180 bar", airOld: false });
-  expect(airOf(NOON - 300)).toMatchObject({ status: "live", air: "was 180 bar 5 min ago", airOld: true });
+  expect(airOf(NOON - 300)).toMatchObject({ status: "live", air: "was 180 bar, 5 min ago", airOld: true });
   expect(airOf()).toMatchObject({ air: "180 bar", airOld: false });
 });
 

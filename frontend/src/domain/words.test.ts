@@ -68,9 +68,9 @@ test("what somebody reported who is not heard any more is said to be of then", (
 
 test("who walks on while his air has not been told for minutes is not said to have that much", () => {
   expect(words.airWords(290, told("live", 60))).toBe("290 bar");
-  expect(words.airWords(290, told("live", 240))).toBe("was 290 bar 4 min ago");
-  expect(words.batteryWords(0.8, told("live", 240))).toBe("was 80 % 4 min ago");
-  expect(words.airWords(290, told("lost", 240))).toBe("was 290 bar 4 min ago");
+  expect(words.airWords(290, told("live", 240))).toBe("was 290 bar, 4 min ago");
+  expect(words.batteryWords(0.8, told("live", 240))).toBe("was 80 %, 4 min ago");
+  expect(words.airWords(290, told("lost", 240))).toBe("was 290 bar, 4 min ago");
 });
 
 test("no place is told by digits that mean nothing", () => {

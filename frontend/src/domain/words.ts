@@ -140,7 +140,7 @@ export function isOld({ age_s, oldAfter_s }: Told): boolean {
 
 /** What somebody reported, and that it was so then where nothing has been heard since, of him or of that. */
 export function asOf(told: Told, said: string): string {
-  if (isOld(told)) return `was ${said} ${shortAge(told.age_s ?? 0)} ago`;
+  if (isOld(told)) return `was ${said}, ${shortAge(told.age_s ?? 0)} ago`;
   return told.status === "live" ? said : `was ${said}`;
 }
 
