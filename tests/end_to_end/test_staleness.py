@@ -90,3 +90,25 @@ def test_who_is_not_tracked_any_more_is_told_with_the_reason_and_is_no_responder
     commander.sees("FF2", "Not tracked")
     assert "unit burned, man is out" in commander.board_words
     assert commander.counts == "1 responder 1 was live 0 stale 0 lost"
+
+
+def test_who_falls_silent_together_leads_to_the_gateway_and_not_to_each_of_them(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident(clock="live", settings={"stale_after_s": 3, "lost_after_s": 600})
+    now = time.time()
+    first = [responder(now, f"e{at}", "E7", [2 * at, 2, 0]) for at in range(2)]
+    second = [responder(now, f"l{at}", "L3", [2 * at, 6, 0]) for at in range(2)]
+    heard(post, incident, base(now), *first, *second)
+    commander.opens(server.url, incident)
+
+    def only_the_first_are_heard() -> bool:
+        heard(post, incident, step(time.time(), "e0", [0.1, 0, 0]))
+        return bool(commander.fallen_silent)
+
+    eventually(only_the_first_are_heard, every_s=0.5)
+    assert commander.fallen_silent[0].startswith("Nobody of L3 has been heard for")
+    eventually(lambda: commander.fallen_silent[0].startswith("Nobody has been heard for"))
+    assert commander.fallen_silent[0].endswith("look to the gateways and their links.")
+    heard(post, incident, *(step(time.time(), name, [0.1, 0, 0]) for name in ("e0", "e1", "l0", "l1")))
+    eventually(lambda: commander.fallen_silent == [])

@@ -92,6 +92,11 @@ class WarningsSeen:
         return [" ".join(text.split()) for text in found]
 
     @property
+    def fallen_silent(self) -> list[str]:
+        """What is said of those of whom nobody is heard."""
+        return [" ".join(text.split()) for text in self.page.get_by_test_id("silence").all_inner_texts()]
+
+    @property
     def clocks_behind(self) -> str:
         """What is said of clocks that are behind; nothing where none is."""
         said = self.page.get_by_test_id("clocks-behind")
