@@ -107,12 +107,12 @@ def test_incidents_that_an_earlier_demo_left_open_are_closed_and_others_are_not(
 def test_an_incident_that_another_demo_plays_goes_on(
     field_server: FieldServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(playing, "LEFT_AFTER_S", 2.0)
+    monkeypatch.setattr(playing, "LEFT_AFTER_S", 4.0)
 
     async def play_twice() -> None:
-        first = asyncio.create_task(play(field_server.url, None, "office-fire", 1))
+        first = asyncio.create_task(play(field_server.url, None, "paper-a", 1))
         await asyncio.to_thread(eventually, lambda: bool(field_server.batches))
-        await play(field_server.url, None, "office-fire", 2, speed=FAST, once=True)
+        await play(field_server.url, None, "paper-a", 2, speed=FAST, once=True)
         assert [one["state"] for one in field_server.incidents.values()] == ["active", "closed"]
         first.cancel()
         await asyncio.gather(first, return_exceptions=True)
