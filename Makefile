@@ -8,7 +8,8 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # Where nothing compiled is kept, each of the many processes that tests start would compile every module anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-# What does not wait for each other runs side by side: the screen is built while numba compiles.
+# What does not wait for each other runs side by side: numba compiles on one processor, and on another one the screen
+# is built and both halves are checked, which calls nothing that is compiled.
 MAKEFLAGS += --jobs=2
 
 .PHONY: setup screen browser run test check check-python check-screen test-screen format types lock bench clean
@@ -49,17 +50,17 @@ test: setup browser check test-screen
 
 check: check-python check-screen
 
-check-python: setup
+check-python: .venv/.installed
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/firethread openapi | cmp - frontend/openapi.json || { echo "the API has changed: run 'make types'"; exit 1; }
 
-check-screen: setup
+check-screen: frontend/node_modules/.installed
 	cd frontend && npm run check --silent
 
-test-screen: setup
+test-screen: frontend/node_modules/.installed
 	cd frontend && npm test --silent
 
 format: setup
