@@ -126,6 +126,8 @@ RANGE_BIAS_OTHER_SIGMA_M = 0.5
 RADIO_BIAS = 0.2
 """How much of that is each radio's own, at one place: 3 cm of UWB's. Antenna delays of calibrated DW1000s are
 good to some centimetres, and by the power received their ranges vary by as much (Decawave APS011)."""
+MISTOLD, MISTOLD_SIGMA_M = 0.02, 4.0
+"""How many told places are wrong, and how far along each axis: a corner or a door mistaken."""
 DELAYED, DELAY_SIGMA_M = 0.02, 2.0
 """How many radios have an antenna delay that nobody has calibrated, and what it adds to their ranges: 10 ns
 there and back are 1.5 m; offsets of Wi-Fi RTT chips differ by some metres."""

@@ -25,9 +25,14 @@ MOVING_MPS = 0.3
 
 
 def covariance_of(state: FusionState) -> Array:
-    """Σ of the graph, n × n, which holds also that radios may be calibrated otherwise than is assumed."""
+    """Σ of the graph, n × n.
+
+    It holds also that radios may be calibrated otherwise than is assumed, and told places be wrong.
+    """
     graph = state.graph
     found = graph.covariance()
+    places = ((state.nodes[name], mistold.moment_m2) for name, mistold in state.mistold.items())
+    elsewhere = [(_along(state, node, found), moment) for node, moment in places if node.mode == "static"]
     for name, known in state.calibrations.items():
         row = graph.starts.get(Variable("range", name))
         if row is not None:
@@ -37,7 +42,16 @@ def covariance_of(state: FusionState) -> Array:
                 widen(found, row, factor)
     for (_, name), suspicion in state.suspects.items():
         _widen_by_delay(state, state.nodes[name], suspicion, found)
+    for along, moment_m2 in elsewhere:
+        found += along @ moment_m2 @ along.T
     return found
+
+
+def _along(state: FusionState, node: NodeState, covariance: Array) -> Array:
+    """By how much everything goes along with a place p, east and north, n × 2: Σ_xp Σ_pp⁻¹."""
+    start = state.graph.starts[node.position]
+    own = slice(start, start + 2)
+    return np.asarray(np.linalg.solve(covariance[own, own], covariance[own]).T, dtype=np.float64)
 
 
 def _widen_by_delay(state: FusionState, node: NodeState, suspicion: Suspicion, covariance: Array) -> None:

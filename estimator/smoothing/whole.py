@@ -20,11 +20,12 @@ from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
 from estimator.smoothing.changes.branch import branch, reunite
 from estimator.smoothing.changes.moved_nodes import MovedNode, moved_nodes
 from estimator.smoothing.changes.relocation import GAIN, USUAL_COST
+from estimator.smoothing.changes.told_places import ask_told_places, believe, free, is_doubted, mistold
 from estimator.smoothing.images.alternatives import Mode
 from estimator.smoothing.images.unit_mounting import likeliest_mounting
 from estimator.smoothing.images.unseen_climbs import find_unseen_climb
 from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.learning.delays import delays, distrust, doubted
+from estimator.smoothing.learning.delays import CLEARER, RARE, delay_odds, delays, distrust, doubted
 from estimator.smoothing.learning.range_noise import learn_ranging
 from estimator.smoothing.learning.unit_noise import learn
 from estimator.smoothing.learning.wrong_steps import withdraw
@@ -96,7 +97,8 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solution, list[Mode]]:
     for _ in range(DELAYS):
         judged = problem.solve(solved.x, iterations=0)
         judged.chain.reduce()
-        found = doubted(delays(problem, judged), GAIN)
+        other = max((place.odds for place in ask_told_places(problem, judged)), default=-math.inf)
+        found = doubted(delays(problem, judged), max(GAIN, other + CLEARER - RARE))
         if not found:
             break
         state = problem.layout.state
@@ -108,6 +110,7 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solution, list[Mode]]:
 def _solved(state: FusionState) -> tuple[Problem, Solution]:
     """The whole incident solved, with the antenna delays that the state knows."""
     withdraw(state)
+    believe(state)
     other = state.copy()
     begun = [_initial_solution(state)]
     if reunite(other):
@@ -137,7 +140,25 @@ def _initial_solution(state: FusionState) -> tuple[Problem, Solution]:
     solved = problem.solve(problem.layout.start(), SLACKS_M, resting=LEARNING_RESTING)
     problem, solved = find_unseen_climb(problem, solved, _problem, LEARNING_RESTING)
     problem, solved, _ = likeliest_mounting(problem, solved, _problem, LEARNING_RESTING, -math.inf)
+    problem, solved = _freed(problem, solved)
     return _with_moved_nodes(problem, solved, LEARNING_RESTING)
+
+
+def _freed(problem: Problem, solved: Solution) -> tuple[Problem, Solution]:
+    """The solution with all that does not stand where it was told to be where it stands."""
+    for _ in range(MOVES):
+        places = ask_told_places(problem, solved)
+        if is_doubted(places) and not solved.rests:
+            solved = problem.solve(solved.x)
+            places = ask_told_places(problem, solved)
+        wrong = mistold(places, delay_odds(problem, solved)) if is_doubted(places) else None
+        if wrong is None:
+            break
+        state = problem.layout.state
+        free(state, wrong)
+        problem = _problem(state)
+        solved = problem.solve(solved.x, SLACKS_M, resting=LEARNING_RESTING)
+    return problem, solved
 
 
 def _misfit(problem: Problem, solved: Solution, most: int) -> float:

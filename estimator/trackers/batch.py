@@ -13,7 +13,7 @@ from estimator.smoothing.images.alternatives import widen
 from estimator.smoothing.images.flip_ambiguity import WHOLE
 from estimator.smoothing.images.likeliest_image import likeliest_image
 from estimator.smoothing.results.advice import advise
-from estimator.smoothing.results.calibration_doubt import doubt_delays, doubt_scales
+from estimator.smoothing.results.calibration_doubt import doubt_scales, doubt_suspected
 from estimator.smoothing.results.evidence import explain
 from estimator.smoothing.results.heading_arcs import widen_by_arcs
 from estimator.smoothing.results.tracks import tracks
@@ -45,7 +45,7 @@ class BatchSmoother:
         covariances = solved.chain.covariances()
         widen_by_arcs(problem.layout, solved, covariances)
         doubt_scales(problem.layout, solved, covariances)
-        doubt_delays(problem, solved, covariances)
+        doubt_suspected(problem, solved, covariances)
         widen(problem.layout, solved.x, [*modes, *others], covariances)
         return tracks(problem.layout, solved.x, *covariances, lifetimes(ordered))
 

@@ -67,7 +67,9 @@ def _told_again(state: FusionState, known: NodeState, reading: Node) -> list[Pos
         off_m = np.asarray(where_m[:2]) - state.place(node)[:2]
         if error_of(state, node, off_m.tolist(), sigma) > CONTRADICTED:
             state.graph.delete_nodes([node.position])
+            state.mistold.pop(node.node, None)
             node = replace(node, mode="undecided", index=state.number(node.node), otherwise=())
+            node = replace(node, absolute=replace(node.absolute, disbelieved_m=None))
             place(state, node, reading.t, where_m, (sigma, sigma, sigma))
             text = f"{node.node} lies elsewhere than it did: its gateway says where"
             state.say("node_moved", reading.t, node.node, text)

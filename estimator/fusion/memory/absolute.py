@@ -78,6 +78,7 @@ class Absolute(msgspec.Struct, frozen=True, array_like=True, gc=False):
         against: such seconds in a row with fixes that agree with each other, not with where it seems to be.
         off_m: how far the newest of them is off, east and north (m).
         counted_t: epoch of the newest fix that was counted (s): copies of one are one.
+        disbelieved_m: standard deviation with which its place was told, if it does not stand there (m).
     """
 
     beginning: Beginning = "sure"
@@ -89,6 +90,12 @@ class Absolute(msgspec.Struct, frozen=True, array_like=True, gc=False):
     against: int = 0
     off_m: tuple[float, float] = (0.0, 0.0)
     counted_t: float = -math.inf
+    disbelieved_m: float | None = None
+
+    @property
+    def believed_m(self) -> Vector3 | None:
+        """Where it was told to be, as long as that is believed (m)."""
+        return self.told_m if self.disbelieved_m is None else None
 
     def with_fix(self, t: float, fits: bool, off_m: tuple[float, float], same_m: float) -> Self:
         """After a fix that fits or does not.

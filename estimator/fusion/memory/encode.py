@@ -7,6 +7,7 @@ from estimator.fusion.learned.delays import Radio, Suspicion
 from estimator.fusion.learned.link_correlation import Links
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.learned.reach import Reach
+from estimator.fusion.learned.told_places import MistoldPlace
 from estimator.fusion.memory.hearing import Listener
 from estimator.fusion.memory.ledger import COLUMNS
 from estimator.fusion.memory.nodes import NodeState
@@ -63,6 +64,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     delayed: list[Radio]
     suspects: list[tuple[Radio, Suspicion]]
     delays_t: float
+    mistold: dict[str, MistoldPlace]
     altimeters: dict[str, float]
     clocks: dict[str, float]
     reach: Reach
@@ -112,6 +114,7 @@ def record_of(state: FusionState) -> FusionRecord:
         list(state.delayed),
         list(state.suspects.items()),
         state.delays_t,
+        dict(state.mistold),
         dict(state.altimeters),
         dict(state.clocks),
         state.reach,
@@ -141,7 +144,7 @@ def state_of(record: FusionRecord) -> FusionState:
     state.level_cost = record.level_cost
     state.navigations = {name: navigation_of(known) for name, known in record.navigations.items()}
     state.delayed, state.delays_t = dict.fromkeys(record.delayed), record.delays_t
-    state.suspects = dict(record.suspects)
+    state.suspects, state.mistold = dict(record.suspects), record.mistold
     state.altimeters = dict(record.altimeters)
     state.clocks = dict(record.clocks)
     state.reach, state.listeners = record.reach, record.listeners

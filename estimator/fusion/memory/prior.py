@@ -51,3 +51,22 @@ class Prior(NamedTuple):
         return self._replace(
             matrix=turn @ self.matrix @ turn.T, vector=turn @ self.vector, reference=reference
         )
+
+    def without(self, key: Key, mean: Array, information: Array) -> "Prior":
+        """The same without some of what was told beforehand of the first numbers of a block, if it has that.
+
+        Such a prior is linear: what is left of it, after all that has left the window, is what it was.
+
+        Args:
+            key: the block.
+            mean: of the numbers that were told, n.
+            information: that is to go, of each, n.
+        """
+        if key not in self.keys:
+            return self
+        start = sum(SIZES[kind] for kind, _ in self.keys[: self.keys.index(key)])
+        at = np.arange(start, start + len(mean))
+        matrix, vector = self.matrix.copy(), self.vector.copy()
+        matrix[at, at] -= information
+        vector[at] -= information * (mean - self.reference[at])
+        return self._replace(matrix=matrix, vector=vector)

@@ -14,6 +14,7 @@ from estimator.fusion.learned.gyros import bias_sigma_radps
 from estimator.fusion.learned.link_correlation import Links
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.learned.reach import Reach
+from estimator.fusion.learned.told_places import MistoldPlace
 from estimator.fusion.memory.hearing import Crossing, Listener
 from estimator.fusion.memory.ledger import RANGE, Ledger
 from estimator.fusion.memory.nodes import NodeState
@@ -64,6 +65,7 @@ class FusionState:
         delayed: the radios whose antenna delay is not calibrated.
         suspects: radios that may have one, and are trusted.
         delays_t: when that was asked last (s).
+        mistold: told places that may be wrong, by node.
         altimeters: standard deviations of what they are off by beforehand, by their names (m).
         clocks: how late ranges of radios are stamped against their bearers' steps, by node (s).
         reach: how far radios reach.
@@ -104,6 +106,7 @@ class FusionState:
         self.delayed: dict[Radio, None] = {}
         self.suspects: dict[Radio, Suspicion] = {}
         self.delays_t = -math.inf
+        self.mistold: dict[str, MistoldPlace] = {}
         self.altimeters: dict[str, float] = {}
         self.clocks: dict[str, float] = {}
         self.reach = Reach()
@@ -126,7 +129,7 @@ class FusionState:
         twin.navigations, twin.notices = dict(self.navigations), []
         twin.delayed, twin.suspects = dict(self.delayed), dict(self.suspects)
         twin.altimeters = dict(self.altimeters)
-        twin.clocks = dict(self.clocks)
+        twin.clocks, twin.mistold = dict(self.clocks), dict(self.mistold)
         return twin
 
     def count(self, what: Count, number: int = 1) -> None:

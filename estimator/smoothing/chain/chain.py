@@ -211,6 +211,10 @@ class Chain:
             found[strand.group.walks] = strand.log_determinants()
         return found, log_determinant(self._cholesky)
 
+    def border_covariance(self) -> Array:
+        """After `reduce` or `solve`: covariance of the border, s × s."""
+        return inverse(self._cholesky)
+
     def covariances(self) -> tuple[Array, Array, Array]:
         """After `reduce` or `solve`: covariances of the walks and of the border.
 
@@ -218,7 +222,7 @@ class Chain:
             Of each walk at each keyframe, k × walks × b × b; of each with itself at the next keyframe,
             (k − 1) × walks × b × b; of the border, s × s.
         """
-        border = inverse(self._cholesky)
+        border = self.border_covariance()
         walks = sum(len(strand.group.walks) for strand in self.strands)
         size = self.width // max(walks, 1)
         found = np.zeros((self._length, walks, size, size))

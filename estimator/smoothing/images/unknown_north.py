@@ -62,7 +62,7 @@ def _images(problem: Problem, x: Array) -> list[Image]:
     """Turns about the told place that is heard most, else about where somebody began, and a reflection."""
     layout, told_m = problem.layout, _told_m(problem)
     centre_m = told_m[0] if told_m else layout.states(x, 0)[layout.walks[0].first, :2].copy()
-    unknown = any(layout.state.life(number).absolute.told_m is None for number in layout.stands)
+    unknown = any(layout.state.life(number).absolute.believed_m is None for number in layout.stands)
     if not _reaches_out(layout, x, centre_m) or (len(told_m) > 1 and not unknown):
         # Of who walks alone among told places it is asked by himself, see `flip_ambiguity`.
         return []
@@ -79,7 +79,7 @@ def _told_m(problem: Problem) -> list[Array]:
     count = dict(zip(heard.tolist(), often.tolist(), strict=True))
     told: dict[tuple[float, float], int] = {}
     for node in problem.layout.state.lives():
-        where = node.place_m or node.absolute.told_m
+        where = node.place_m or node.absolute.believed_m
         if not node.moving and where is not None and node.index in count:
             told[where[0], where[1]] = told.get((where[0], where[1]), 0) + count[node.index]
     return [np.array(where) for where in sorted(told, key=lambda where: (-told[where], where))]
@@ -95,7 +95,7 @@ def _solved(problem: Problem, solved: Solution, images: Sequence[Image]) -> list
     """The solutions that images of all that nobody has told a place lead to, each once."""
     layout, found = problem.layout, list[tuple[Image, Solution]]()
     free = [walk.number for walk in layout.walks if walk.node.role == "responder"]
-    free += [number for number in layout.stands if layout.state.life(number).absolute.told_m is None]
+    free += [number for number in layout.stands if layout.state.life(number).absolute.believed_m is None]
     for image in images:
         x = moved(layout, solved.x, dict.fromkeys(free, image))
         if problem.at(x).cost > solved.cost + FAR:

@@ -28,6 +28,8 @@ from estimator.smoothing.problem.solution import Solution
 RARE = math.log(physics.DELAYED / (1.0 - physics.DELAYED))
 ODDS = math.log(TRUSTED / (1.0 - TRUSTED)) - RARE
 """Log likelihood ratio from which on a radio is not trusted any more."""
+CLEARER = 3.0
+"""So much likelier it must be than another cause of the same."""
 ALIKE = 3.0
 """Radios that readings hardly tell apart from the likeliest one are not trusted either."""
 ASKED = 8
@@ -44,13 +46,14 @@ AGAIN, LONGEST_S = 0.5, 60.0
 """It is asked again after this share of the window, or where something is suspicious, with each solution."""
 
 
-def doubt_delays(state: FusionState, problem: Problem, solved: Solution) -> None:
+def doubt_delays(state: FusionState, problem: Problem, solved: Solution, other: float = -math.inf) -> None:
     """Trust no radio any longer that is likely to be off: its ranges become a technology by themselves.
 
     Args:
         state: takes it; its window is then to be solved again.
         problem: of the window.
         solved: its solution, whose chain has been reduced.
+        other: log odds of the likeliest other cause of what such a radio would do.
     """
     span_s = float(problem.layout.grid[-1] - problem.layout.grid[0])
     if state.newest_t < state.delays_t + min(AGAIN * span_s, LONGEST_S):
@@ -60,7 +63,7 @@ def doubt_delays(state: FusionState, problem: Problem, solved: Solution) -> None
     found = _likeliest(pulling, _rejected_radios(problem, solved, told))
     if not found or found[0].odds < 0.0:
         state.delays_t = state.newest_t
-    off = doubted(found)
+    off = doubted(found, max(ODDS, other + CLEARER - RARE))
     state.suspects = suspicions(problem, solved, told, [one for one in pulling if one not in off])
     distrust(state, off)
 
@@ -106,6 +109,19 @@ def distrust(state: FusionState, radios: list[Delay]) -> None:
         technology_states(state, name)
     state.ledger.replace("pairs", pairs)
     state.due = True
+
+
+def delay_odds(problem: Problem, solved: Solution) -> dict[str, float]:
+    """Log odds that each node's radio is off, whatever it is of.
+
+    Args:
+        problem: of a window, or of the whole incident.
+        solved: its solution, whose chain has been reduced.
+    """
+    found: dict[str, float] = {}
+    for one in delays(problem, solved):
+        found.setdefault(one.radio[1], one.odds + RARE)
+    return found
 
 
 def delays(problem: Problem, solved: Solution) -> list[Delay]:

@@ -6,6 +6,8 @@ each solution of the window, find the variance under which unit and radio agree 
 what the radio does not see of a step stays in V.
 """
 
+import math
+
 import numpy as np
 from msgspec.structs import replace
 from numba import njit
@@ -36,7 +38,12 @@ PARTS = 4
 
 
 def learn(
-    state: FusionState, problem: Problem, solved: Solution, step: float = STEP, kinds: bool = True
+    state: FusionState,
+    problem: Problem,
+    solved: Solution,
+    step: float = STEP,
+    kinds: bool = True,
+    other: float = -math.inf,
 ) -> Array:
     """Learn from a solved window how noisy each unit is, and which technologies are calibrated.
 
@@ -46,6 +53,7 @@ def learn(
         solved: its solution, whose chain is eliminated here.
         step: farthest that the logarithm of a variance moves at once.
         kinds: technologies are judged as well.
+        other: see `delays.doubt_delays`.
 
     Returns:
         Covariance of each walk at each keyframe, k × walks × 6 × 6.
@@ -61,7 +69,7 @@ def learn(
     if kinds:
         calibrate(state, problem, solved.x, border)
         if solved.rests:
-            doubt_delays(state, problem, solved)
+            doubt_delays(state, problem, solved, other)
             state.due = learn_ranging(state, problem, solved) or state.due
     learn_biases(state, problem, solved.x, found)
     return found

@@ -1,17 +1,19 @@
-"""What it does to the places of a solved chain that a technology, or a radio, may be calibrated, or not."""
+"""What it does to the places of a solved chain that a technology, a radio or a told place may be off."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion.learned.calibration import Calibration, doubt
 from estimator.graph.dense import Array
+from estimator.smoothing.changes.told_places import ask_told_places, doubts_of, is_doubted
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES
-from estimator.smoothing.learning.delays import scored_delays
+from estimator.smoothing.learning.delays import delay_odds, scored_delays
 from estimator.smoothing.learning.radios import ranges_by_radio
-from estimator.smoothing.learning.suspected_delays import Suspect, suspects
+from estimator.smoothing.learning.suspected_delays import suspects
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.results.heading_arcs import responses
@@ -47,19 +49,51 @@ def doubt_scales(layout: Layout, solved: Solution, found: tuple[Array, Array, Ar
         _widen(layout, found, factor, across[:, i])
 
 
-def suspected(problem: Problem, solved: Solution) -> list[Suspect]:
-    """Radios that may be off, though they are trusted.
+class Doubt(NamedTuple):
+    """Something that may be otherwise than it is taken to be.
+
+    Attributes:
+        square: mean square of what it may be off by.
+        moved: by how much each unknown is elsewhere then, for each of its units, flat.
+    """
+
+    square: float
+    moved: Array
+
+
+def suspected(problem: Problem, solved: Solution) -> list[Doubt]:
+    """What radios may be off by that are trusted, and places that were told.
 
     Args:
         problem: of the chain.
         solved: its solution, whose chain is solved.
     """
     told = ranges_by_radio(problem, solved)
-    return list(suspects(problem, solved, told, scored_delays(problem, solved, told)))
+    radios = suspects(problem, solved, told, scored_delays(problem, solved, told))
+    return [*(Doubt(one.off_m2, one.moved) for one in radios), *_places(problem, solved)]
 
 
-def doubt_delays(problem: Problem, solved: Solution, found: tuple[Array, Array, Array]) -> None:
-    """Let covariances hold that radios may have an antenna delay.
+def _places(problem: Problem, solved: Solution) -> list[Doubt]:
+    """Told places that may be wrong: everything goes along with such a place p by L⁻¹_xp (L⁻¹_pp)⁻¹."""
+    layout, places = problem.layout, ask_told_places(problem, solved)
+    if not is_doubted(places):
+        return []
+    wrong = doubts_of(places, delay_odds(problem, solved))
+    size, found = layout.length * layout.width, []
+    for place in places:
+        start = size + layout.stands[place.number]
+        across = responses(layout, solved, [start, start + 1])
+        along = np.linalg.solve(across[start : start + 2], across.T).T
+        squares, axes = np.linalg.eigh(wrong[place.name].moment_m2)
+        found += [
+            Doubt(square, along @ axis)
+            for square, axis in zip(np.maximum(squares, 0.0).tolist(), axes.T, strict=True)
+        ]
+    return found
+
+
+def doubt_suspected(problem: Problem, solved: Solution, found: tuple[Array, Array, Array]) -> None:
+    """Let covariances hold that radios may have an antenna delay, and told places may be wrong.
 
     Args:
         problem: of the chain.
@@ -67,7 +101,7 @@ def doubt_delays(problem: Problem, solved: Solution, found: tuple[Array, Array, 
         found: see `doubt_scales`; changed in place.
     """
     for suspect in suspected(problem, solved):
-        _widen(problem.layout, found, suspect.off_m2, suspect.moved)
+        _widen(problem.layout, found, suspect.square, suspect.moved)
 
 
 def _widen(layout: Layout, found: tuple[Array, Array, Array], square: float, moved: Array) -> None:
@@ -81,7 +115,7 @@ def _widen(layout: Layout, found: tuple[Array, Array, Array], square: float, mov
 
 
 def doubted(
-    judged: dict[int, Calibration], x: Array, told: Array, radios: Sequence[Suspect], start: int
+    judged: dict[int, Calibration], x: Array, told: Array, doubts: Sequence[Doubt], start: int
 ) -> Array:
     """What is to be added to one place's covariance, 3 × 3 (m²).
 
@@ -89,14 +123,14 @@ def doubted(
         judged: see `scales`.
         x: the estimate, flat.
         told: columns of the covariance for these scales, size × m.
-        radios: see `suspected`.
+        doubts: see `suspected`.
         start: where the place is.
     """
     found = np.zeros((3, 3))
     for i, (row, known) in enumerate(judged.items()):
         across = told[start : start + 3, i]
         found += doubt(known, float(x[row]), float(told[row, i])) * np.outer(across, across)
-    for radio in radios:
-        moved = radio.moved[start : start + 3]
-        found += radio.off_m2 * np.outer(moved, moved)
+    for one in doubts:
+        moved = one.moved[start : start + 3]
+        found += one.square * np.outer(moved, moved)
     return found

@@ -9,6 +9,7 @@ from estimator.fusion.entering.introduce import upper_triangle
 from estimator.fusion.entering.leaving import retire
 from estimator.fusion.learned.calibration import Calibration
 from estimator.fusion.learned.delays import Suspicion
+from estimator.fusion.learned.told_places import MistoldPlace
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.report import covariance_of, estimates, relative
@@ -48,6 +49,30 @@ def test_a_picture_holds_both_kinds_of_a_scale_each_as_likely_as_it_is(seed: int
     off = other - x
     mixture = (1.0 - share) * covariance + share * (unsure + np.outer(off, off))
     assert covariance_of(state) == pytest.approx(mixture, rel=1e-6, abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_picture_holds_that_a_told_place_may_be_wrong(seed: int) -> None:
+    """Against the mixture of two whole solutions: its place told surely, and hardly."""
+    anchor, share, told_m = Variable("position", "a"), 0.3, np.array([2.0, -1.0])
+    chance = np.random.default_rng(seed)
+    rows = chance.normal(0.0, 2.0, (9, 6))
+    matrix, vector = rows.T @ rows, rows.T @ chance.normal(0.0, 3.0, 9)
+    found = []
+    for sigma_m in (0.1, physics.MISTOLD_SIGMA_M):
+        known = np.array([sigma_m**-2, sigma_m**-2, 0.0, 0.0, 0.0, 0.0])
+        covariance = np.linalg.inv(matrix + np.diag(known))
+        x = covariance @ (vector + known * np.array([*told_m, 0.0, 0.0, 0.0, 0.0]))
+        found.append((matrix + np.diag(known), x, covariance))
+    (whole, x, covariance), (_, other, unsure) = found
+    state = FusionState()
+    state.graph = Kirchhoff.of([anchor, PLACE], whole, whole @ x * 0.0, x)
+    state.nodes["a"] = NodeState(node="a", role="anchor", mode="static", t=0.0)
+    off_m = (other - x)[:2]
+    moment = share * (np.outer(off_m, off_m) + unsure[:2, :2] - covariance[:2, :2])
+    state.mistold["a"] = MistoldPlace(*moment[[0, 0, 1], [0, 1, 1]].tolist())
+    mixture = (1.0 - share) * covariance + share * (unsure + np.outer(other - x, other - x))
+    assert covariance_of(state) == pytest.approx(mixture, rel=1e-6, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -36,3 +36,19 @@ def test_it_costs_his_image_what_it_has_cost_him(seed: int, by_rad: float) -> No
         there[start : start + 2] = images[number].of(x[start : start + 2])
     assert cost(prior.imaged(images), there) == pytest.approx(cost(prior, x), rel=1e-9, abs=1e-6)
     assert prior.imaged(images).epochs == prior.epochs
+
+
+@given(st.integers(0, 1000))
+def test_what_was_told_of_a_place_can_be_taken_out_of_it_again(seed: int) -> None:
+    """Whatever else has been marginalised, what was told stands in it as it was added."""
+    chance = np.random.default_rng(seed)
+    rows, first = chance.normal(0.0, 1.0, (SIZE, SIZE)), sum(SIZES[kind] for kind, _ in KEYS[:2])
+    matrix, vector, at = rows.T @ rows, chance.normal(0.0, 1.0, SIZE), chance.normal(0.0, 5.0, SIZE)
+    mean, known = chance.normal(0.0, 5.0, 2), np.array([100.0, 25.0])
+    told, own = Prior(KEYS, matrix.copy(), vector.copy(), at, {}), np.arange(first, first + 2)
+    told.matrix[own, own] += known
+    told.vector[own] += known * (mean - at[own])
+    left = told.without(("stand", 2), mean, known)
+    assert left.matrix == pytest.approx(matrix, rel=1e-9, abs=1e-9)
+    assert left.vector == pytest.approx(vector, rel=1e-9, abs=1e-9)
+    assert told.without(("stand", 7), mean, known) is told
