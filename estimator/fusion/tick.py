@@ -1,7 +1,7 @@
 """One tick of the default tracker: what happens to its readings, in this order."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from operator import attrgetter, itemgetter
 
 import numpy as np
@@ -196,16 +196,19 @@ def _hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single]
         singles: what is held along with them; more is added.
     """
     until: dict[str, float] = {}
+    placed: set[str] = set()
     between: list[AnyPair] = []
     others: list[AnyHeld] = []
     for reading in readings:
+        if isinstance(reading, (Range, Position)):
+            placed.update(names_of(reading))
         if isinstance(reading, PAIRS):
             between.append(reading)
             until[reading.a] = until[reading.b] = reading.t
         else:
             others.append(reading)
             until.update(dict.fromkeys(names_of(reading), reading.t))
-    _carry(state, until)
+    _carry(state, until, placed)
     pairs = Pairs(state)
     told = pairs.fused_t
     for reading in others:
@@ -270,8 +273,14 @@ def names_of(reading: AnyFolded | Crossing) -> tuple[str, ...]:
     return (reading.node,)
 
 
-def _carry(state: FusionState, until: Mapping[str, float]) -> None:
-    """Move nodes without newer displacements to the newest epoch at which something is held against them."""
+def _carry(state: FusionState, until: Mapping[str, float], placed: Collection[str]) -> None:
+    """Move nodes without newer displacements to the newest epoch at which something is held against them.
+
+    Args:
+        state: the fusion.
+        until: that epoch, by node (s).
+        placed: of whom a range or a fix tells there.
+    """
     drifting: dict[str, float] = {}
     silent: dict[str, float] = {}
     for name, t in until.items():
@@ -283,4 +292,4 @@ def _carry(state: FusionState, until: Mapping[str, float]) -> None:
     if drifting:
         move_free(state, drifting)
     if silent:
-        drift_units(state, silent)
+        drift_units(state, silent, placed=placed)

@@ -64,6 +64,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         otherwise: where it may be instead, by what readings tell as well.
         whole_t: since when its unit's displacements follow each other without a gap.
         missed_s: for how long it has told nothing, all gaps since it last told a whole stride.
+        placed_t: epoch of the newest range or fix by which its bearer was followed while it was silent (s).
         cadence: how its unit reports, of displacements of which it does not say since when they are.
         walk_factors: learned variances of its unit over the assumed ones: of displacements, of its heading.
     """
@@ -107,6 +108,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     whole_t: float = math.inf
     missed_s: float = 0.0
     cadence: Cadence = Cadence()
+    placed_t: float = -math.inf
 
     @property
     def position(self) -> Variable:

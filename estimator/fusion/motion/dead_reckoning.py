@@ -1,18 +1,19 @@
 """How nodes with a PDR unit move between ticks: by its displacements, or unseen in a silence."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 from msgspec.structs import replace
 from numba import njit
 
 from estimator.estimate import Vector3
+from estimator.fusion import physics
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m
 from estimator.fusion.motion.recent_places import Mark
-from estimator.fusion.motion.silence import SILENT_S
+from estimator.fusion.motion.silence import SILENT_S, unplaced_m2
 from estimator.fusion.motion.steps import Noise, Step, sum_of, unseen_noise
 from estimator.graph.dense import Array, Indices
 from estimator.graph.filter_kernels import advance
@@ -121,7 +122,9 @@ def was_silent(node: NodeState) -> bool:
     return node.unit_t is None or node.pose_t > node.unit_t + SILENT_S
 
 
-def drift_units(state: FusionState, until: Mapping[str, float], onward: bool = False) -> None:
+def drift_units(
+    state: FusionState, until: Mapping[str, float], onward: bool = False, placed: Collection[str] = ()
+) -> None:
     """Units have not reported up to an epoch at which something else is to be held against their position.
 
     Their bearers go on as they went for a moment; they may have stood or walked (`silence.unheard_m2`). A
@@ -131,6 +134,7 @@ def drift_units(state: FusionState, until: Mapping[str, float], onward: bool = F
         state: the fusion.
         until: the epoch, by unit.
         onward: nothing is heard of them: what is tells where they go, and nothing of their headings.
+        placed: those of them of whom a range or a fix tells there.
     """
     moves = []
     for name, t in until.items():
@@ -149,11 +153,20 @@ def drift_units(state: FusionState, until: Mapping[str, float], onward: bool = F
             trail = (*node.trail, mark_after(node.trail[-1], t, delta_m))
         across, _, up, turn, bias, scale = noise
         across = max(across, untold_m2)
+        placed_t, silent = t if name in placed else node.placed_t, since_s + span_s > SILENT_S
+        if silent and t > placed_t + physics.UNHEARD_MEMORY_S:
+            across = max(across, unplaced_m2(span_s, since_s))
         step = (*delta_m, across, up, turn, bias, scale, 1.0)
         state.ledger.add("steps", t, node.index, node.pose_t, *step)
         moves.append((node, delta_m, span_s, (across, across, up, turn, bias, scale)))
         state.nodes[name] = replace(
-            node, pose_t=t, trail=trail, missed_s=missed_s + (span_s if since_s == 0.0 else 0.0)
+            node,
+            pose_t=t,
+            trail=trail,
+            missed_s=missed_s + (span_s if since_s == 0.0 else 0.0),
+            placed_t=placed_t,
+            # What readings of a link have in common he leaves behind as he goes, seen or not.
+            way_m=node.way_m + (physics.FREE_WAY_MPS * span_s if silent else 0.0),
         )
     # His unit's frame turns on, whether it reports or not.
     advance_by(state, moves)

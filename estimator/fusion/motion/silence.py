@@ -42,6 +42,20 @@ def unheard_m2(span_s: float, since_s: float) -> float:
     return max(wandered_m2(span_s, since_s), kept)
 
 
+def unplaced_m2(span_s: float, since_s: float) -> float:
+    """The same of somebody of whom powers alone are heard (m²).
+
+    A power tells his place to several metres, and nothing of how he goes: he may keep his way as who is not
+    heard of. Held to a random walk that forgets it within a second, he would fall behind, and good powers
+    would be outliers of where he was thought to be (decision 0086).
+
+    Args:
+        span_s: how long the part lasts (s).
+        since_s: how long his unit has reported nothing before it (s); infinite: nobody knows.
+    """
+    return gone_m2(physics.SILENT_SPEED_MPS, physics.UNHEARD_MEMORY_S, span_s, since_s)
+
+
 @njit(cache=True)
 def went_on(since_s: float) -> tuple[float, float]:
     """How far somebody whose unit has just told his velocity goes on, and the variance about that.

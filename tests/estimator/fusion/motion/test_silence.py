@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from estimator.fusion import physics
 from estimator.fusion.entering.introduce import attach_unit
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.motion.silence import unheard_m2, wandered_m2, went_on
+from estimator.fusion.motion.silence import unheard_m2, unplaced_m2, wandered_m2, went_on
 from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
@@ -52,6 +52,15 @@ def test_who_has_just_told_how_he_goes_goes_on_so_and_may_change_it_at_random(ga
     along_s, variance_m2 = went_on(gap_s)
     assert told_mps * along_s == pytest.approx(float(way.mean()), rel=0.02)
     assert variance_m2 == pytest.approx(float(way.var()), rel=0.05)
+
+
+@given(st.floats(0.1, 60.0), st.floats(0.0, 60.0))
+def test_of_whom_powers_alone_tell_parts_of_a_silence_add_up_to_a_way_that_is_kept(
+    one_s: float, other_s: float
+) -> None:
+    whole_m2 = unplaced_m2(one_s + other_s, 0.0)
+    assert unplaced_m2(one_s, 0.0) + unplaced_m2(other_s, one_s) == pytest.approx(whole_m2, rel=1e-6)
+    assert whole_m2 == unheard_m2(one_s + other_s, 0.0) > wandered_m2(one_s + other_s, 0.0)
 
 
 @given(st.floats(0.001, 0.05))
