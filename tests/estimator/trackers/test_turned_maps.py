@@ -48,7 +48,7 @@ def walk(seed: int) -> list[AnyReading]:
 def turns_of_the_map(seed: int) -> Array:
     """By how much the beacons are shown turned about where he was switched on, at each second (rad)."""
     tracker, told, found = KirchhoffTracker(), walk(seed), list[float]()
-    for second in range(1, SECONDS + 1):
+    for second in range(SECONDS + 1):
         tracker.fold([r for r in told if second - 1 < r.t <= second])
         across = along = 0.0
         for node in tracker.estimates():
