@@ -112,7 +112,7 @@ def _warm_chain() -> None:
     motion = unit_motion(between, one, states)
     misfit(motion)
     doubt = disturbance_covariance(motion, np.zeros((k, 1, n, n)), np.zeros((k - 1, 1, n, n)), 0, 0)
-    noise_scores(motion, doubt)
+    noise_scores(motion, doubt, np.ones(1, dtype=np.bool_))
     gains(motion, doubt)
     inverses(motion.noise)
     for wide_states in (states, np.zeros((k, 2 * n))[:, :n]):

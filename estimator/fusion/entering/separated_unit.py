@@ -12,7 +12,7 @@ from msgspec.structs import replace
 
 from estimator.fusion.entering.replaced_unit import change, framed
 from estimator.fusion.images import doubt_m2
-from estimator.fusion.memory.ledger import COLUMNS
+from estimator.fusion.memory.ledger import GIVEN, UNSEEN
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.separated_unit import SeparatedUnit
 from estimator.fusion.memory.state import FusionState
@@ -20,8 +20,6 @@ from estimator.fusion.motion.silence import unheard_m2
 from estimator.graph.dense import Array
 from estimator.inertial.displacement import InertialDisplacement
 from estimator.measurements.displacement import Displacement
-
-GIVEN = COLUMNS["steps"].index("given")
 
 
 def set_aside(state: FusionState, readings: Sequence[Displacement]) -> list[Displacement]:
@@ -63,7 +61,7 @@ def part(
         t, from_t, gone_e, gone_n = steps[i, [0, 2, 3, 4]].tolist()
         marks.append((t, marks[-1][1] + gone_e, marks[-1][2] + gone_n))
         wander_m2 = unheard_m2(t - from_t, max(from_t - since_t, 0.0))
-        steps[i, 3:8], steps[i, GIVEN] = (0.0, 0.0, 0.0, wander_m2, 0.1 * wander_m2), 1.0
+        steps[i, 3:8], steps[i, GIVEN] = (0.0, 0.0, 0.0, wander_m2, 0.1 * wander_m2), UNSEEN
     state.ledger.replace("steps", steps)
     known = SeparatedUnit(since_t, place_m, turn_rad, tuple(marks))
     state.nodes[name] = replace(node, apart=known, trail=())

@@ -9,6 +9,7 @@ from numba import njit
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
+from estimator.fusion.memory.ledger import UNSEEN
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m
@@ -156,7 +157,7 @@ def drift_units(
         placed_t, silent = t if name in placed else node.placed_t, since_s + span_s > SILENT_S
         if silent and t > placed_t + physics.UNHEARD_MEMORY_S:
             across = max(across, unplaced_m2(span_s, since_s))
-        step = (*delta_m, across, up, turn, bias, scale, 1.0)
+        step = (*delta_m, across, up, turn, bias, scale, UNSEEN)
         state.ledger.add("steps", t, node.index, node.pose_t, *step)
         moves.append((node, delta_m, span_s, (across, across, up, turn, bias, scale)))
         state.nodes[name] = replace(

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from estimator.fusion import physics
 from estimator.fusion.entering.introduce import attach_unit, begin_at_base, waits_for_ranges
 from estimator.fusion.entering.replaced_unit import begin_frame, framed
-from estimator.fusion.memory.ledger import GYRO_BIAS
+from estimator.fusion.memory.ledger import ASSUMED, CLAIMED, GYRO_BIAS
 from estimator.fusion.memory.state import Count, FusionState
 from estimator.fusion.motion.dead_reckoning import advance_units
 from estimator.fusion.motion.steps import Step, start_of
@@ -117,7 +117,7 @@ def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[S
         # The tick moves on first, then takes in what was told before.
         sigma = math.sqrt(told.sigma**2 + told.since)
         turns.append(Single(node.unit, 1, told.value, sigma, noise))
-    given = float(reading.sigma_m is not None)
+    given = ASSUMED if reading.sigma_m is None else CLAIMED
     across, _, up, turn, bias, scale = increment.noise
     variances = (across, up, turn, bias, scale, given)
     state.ledger.add("steps", reading.t, node.index, increment.since_t, *increment.delta_m, *variances)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from estimator.fusion.memory.ledger import ASSUMED, GIVEN, UNSEEN
 from estimator.fusion.motion.long_displacements import STRAIGHT_S
 from estimator.fusion.motion.silence import wandered_m2
 from estimator.graph.chain_kernels import Integers
@@ -45,7 +46,7 @@ class Way:
     """
 
     def __init__(self, begin_t: float, steps: Array, factors: tuple[float, float]) -> None:
-        self.begin_t = begin_t
+        self.begin_t, self._steps = begin_t, steps
         self.marks, self.sums = summed(begin_t, steps, *factors)
 
     def bridged(self, t: Array) -> Array:
@@ -67,6 +68,13 @@ class Way:
         """What lies between epochs, m × 12, moments from `since` on; silence adds what it lets wander."""
         since, until = np.ascontiguousarray(since), np.ascontiguousarray(until)
         return np.asarray(sums_between(self.begin_t, self.marks, self.sums, since, until))
+
+    def unseen_s(self, t: Array) -> Array:
+        """For how long its unit has told nothing up to epochs, m (s)."""
+        steps = self._steps
+        spans = np.where(steps[:, GIVEN] == UNSEEN, steps[:, 0] - steps[:, 2], 0.0)
+        inside = np.interp(t, self.marks, np.concatenate([[0.0], np.cumsum(spans)]))
+        return np.asarray(inside + np.maximum(t - self.marks[-1], 0.0) - np.maximum(self.marks[0] - t, 0.0))
 
     def gone(self, t: Array) -> Array:
         """Share of its whole length that it has gone at `t`, m."""
@@ -123,7 +131,7 @@ def summed(begin_t: float, steps: Array, by_place: float, by_turn: float) -> tup
     for i in range(m):
         marks[i + 1] = steps[i, 0]
         middle = 0.5 * (steps[i, 2] + steps[i, 0]) - begin_t
-        factor = by_place if steps[i, 11] == 0.0 else 1.0
+        factor = by_place if steps[i, GIVEN] == ASSUMED else 1.0
         for c in range(3):
             each[c], each[3 + c] = steps[i, 3 + c], steps[i, 3 + c] * middle
         each[6], each[7], each[8] = steps[i, 6] * factor, steps[i, 7], steps[i, 8] * by_turn

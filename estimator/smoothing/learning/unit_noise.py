@@ -11,6 +11,7 @@ import math
 import numpy as np
 from msgspec.structs import replace
 from numba import njit
+from numpy.typing import NDArray
 
 from estimator.fusion.learned.calibration import Calibration, scale_sigma, told_of, uncalibrated
 from estimator.fusion.memory.state import FusionState
@@ -31,6 +32,7 @@ SEEN = 0.03
 """Share of a step's own noise that readings usually tell apart: what a score is held against."""
 LEAST, MOST = 0.03, 400.0
 """The worst unit is off by 0.7 m in each metre: it tells nothing any more."""
+ROUNDING_S = 1e-6
 BIAS = 4
 """Which of a state's numbers is the gyro bias."""
 PARTS = 4
@@ -88,7 +90,10 @@ def learn_walks(
         most: see `STEP`.
     """
     for i, doubt in doubts.items():
-        scores = noise_scores(solved.motions[i], doubt).tolist()
+        reported = _reported(problem, i)
+        if not reported.any():
+            continue
+        scores = noise_scores(solved.motions[i], doubt, reported).tolist()
         node = state.life(problem.layout.walks[i].number)
         factors = []
         for factor, (score, sure) in zip(node.walk_factors, scores, strict=True):
@@ -99,13 +104,23 @@ def learn_walks(
         state.keep(replace(node, walk_factors=(factors[0], factors[1])))
 
 
+def _reported(problem: Problem, index: int) -> NDArray[np.bool_]:
+    """Between which keyframes a unit has told all of its way, k: how else he goes is not its noise."""
+    walk = problem.layout.walks[index]
+    if walk.way is None:
+        return np.zeros(walk.last - walk.first, dtype=np.bool_)
+    unseen_s = np.diff(walk.way.unseen_s(problem.layout.times[walk.first : walk.last + 1, index]))
+    return np.asarray(unseen_s < ROUNDING_S)
+
+
 @njit(cache=True)
-def noise_scores(motion: Motion, unsure_of: Array) -> Array:
+def noise_scores(motion: Motion, unsure_of: Array, reported: NDArray[np.bool_]) -> Array:
     """Score by the logarithm of a variance, ½ Σ [w wᵀ + V − Q] : Q⁻¹ Q_i Q⁻¹, and ½ Σ (Q⁻¹ Q_i) : (Q_i Q⁻¹).
 
     Args:
         motion: of a walk.
         unsure_of: V of its steps, k × 6 × 6.
+        reported: which of them its unit has told all of, k; others say nothing of it.
 
     Returns:
         A row for the variances of places and one for those of headings, 2 × 2.
@@ -116,6 +131,8 @@ def noise_scores(motion: Motion, unsure_of: Array) -> Array:
     part, excess, told = np.zeros((2, PARTS, PARTS)), np.empty((PARTS, PARTS)), np.empty((PARTS, PARTS))
     half = np.empty((PARTS, size))
     for i in range(len(motion.residual)):
+        if not reported[i]:
+            continue
         known, noise, off, doubt = motion.information[i], motion.noise[i], motion.residual[i], unsure_of[i]
         turn = noise[3, 3]
         east, north = 2.0 * noise[0, 3] / turn, 2.0 * noise[1, 3] / turn

@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
+from estimator.fusion.memory.ledger import CLAIMED
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.walks import Motion
@@ -198,7 +199,7 @@ def widen_steps(state: FusionState, slips: list[Slip]) -> None:
         slips: of a solved window; whoever solves it again finds them no more.
     """
     for slip in slips:
-        up2, given = physics.DISPLACEMENT_FLOOR_M**2, 1.0
+        up2, given = physics.DISPLACEMENT_FLOOR_M**2, CLAIMED
         state.ledger.add(
             "steps", slip.t, slip.number, slip.t, *(0.0,) * 3, physics.SLIP_M**2, up2, 0.0, 0.0, 0.0, given
         )

@@ -26,8 +26,17 @@ TURN = physics.HEADING_WALK_RAD_PER_ROOT_M**2 + physics.GYRO_WALK_RAD_PER_ROOT_S
 """Variances that are assumed of a metre in a second."""
 
 
-def walked(seconds: int, factors: tuple[float, float], seed: int = 1) -> FusionState:
-    """A unit with so many times the assumed variances walks about, with a sharp fix at each keyframe."""
+def walked(
+    seconds: int, factors: tuple[float, float], seed: int = 1, dies_s: float = math.inf
+) -> FusionState:
+    """A unit with so many times the assumed variances walks about, with a sharp fix at each keyframe.
+
+    Args:
+        seconds: for how long.
+        factors: of position and of heading.
+        seed: of chance.
+        dies_s: from when on the unit tells nothing.
+    """
     chance = np.random.default_rng(seed)
     place, heading_error = np.zeros(3), 0.0
     readings: list[AnyReading] = [entered()]
@@ -39,7 +48,8 @@ def walked(seconds: int, factors: tuple[float, float], seed: int = 1) -> FusionS
         noise = math.sqrt(factors[0] * PLACE) * chance.normal(0.0, 1.0, 3)
         delta = (math.cos(told) + noise[0], math.sin(told) + noise[1], noise[2])
         heading_error += math.sqrt(0.5 * factors[1] * TURN) * chance.normal()
-        readings.append(Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=delta))
+        if second <= dies_s:
+            readings.append(Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=delta))
         if second % FIX_S == 0:
             e, n, u = (place + chance.normal(0.0, FIX_M, 3)).tolist()
             readings.append(Position(t=float(second), node="ff1", position_m=(e, n, u), sigma_m=(FIX_M,) * 3))
@@ -92,6 +102,16 @@ def test_from_far_off_both_factors_are_led_to_the_truth(
     settled = np.exp(np.mean(seen[-4:], axis=0)).tolist()
     for learned, right in zip(settled, truth, strict=True):
         assert right / 1.6 < learned < right * 1.6
+
+
+def test_how_a_bearer_goes_while_his_unit_tells_nothing_is_not_its_noise() -> None:
+    learned = []
+    for seconds in (80, 200):
+        state = walked(seconds, (1.0, 1.0), dies_s=80.0)
+        for _ in range(12):
+            learn_once(state)
+        learned.append(state.nodes["ff1"].walk_factors)
+    assert learned[1] == pytest.approx(learned[0], rel=0.1)
 
 
 def score_of(step: float, off: float) -> float:
