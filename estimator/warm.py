@@ -45,7 +45,13 @@ from estimator.smoothing.changes.track_fit import RangedTrack, fit_track
 from estimator.smoothing.keyframes.displacement_sums import Way, ways_of
 from estimator.smoothing.keyframes.ends import Ground, Nodes, Table, place_ends
 from estimator.smoothing.keyframes.walks import STATES, dead_reckon, inverses, misfit, reckon, unit_motion
-from estimator.smoothing.learning.delay_scores import PROBES, cross_information, lag_one_correlation, probe
+from estimator.smoothing.learning.delay_scores import (
+    PROBES,
+    cross_information,
+    lag_one_correlation,
+    probe,
+    scores_by_half,
+)
 from estimator.smoothing.learning.unit_noise import noise_scores
 from estimator.smoothing.learning.wrong_steps import disturbance_covariance, gains
 from estimator.smoothing.problem.gauge_turn import moved_from, turn_between
@@ -83,7 +89,8 @@ def warm_up() -> None:
     keep_heading(boot)
     again, felt = boot.to_level_again(), np.hstack([rests, np.zeros((60, 3))])
     place_boot(again, felt, find_standstill(again, felt, 0.01), 0.01)
-    add_epoch(Clock.new(100.0)._replace(counted=1), 1.0, 100.0, overlaps=False)
+    clock = add_epoch(Clock.new(100.0)._replace(counted=1), 1.0, 100.0, overlaps=False)
+    add_epoch(clock._replace(counted=1), 1.01, 100.0, overlaps=False)
     drop_stuck_samples(initial_watch(), np.zeros((0, 6)), np.zeros((2, 6)), 0, 0.01)
     predict_bearing(place, place, one)
     wrap(one)
@@ -121,7 +128,7 @@ def _warm_chain() -> None:
     add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)
     eliminate(0, k, diagonal, link, wide)
     take_off(0, k, wide, corner.copy(), rest.copy())
-    for right in (np.zeros((k, n, 2))[:, :, ::2], np.zeros((k, n, 2), order="F")):
+    for right in (np.zeros((k, n, 2)), np.zeros((k, n, 2))[:, :, ::2], np.zeros((k, n, 2), order="F")):
         carry(diagonal, link, wide, right, np.zeros((s, right.shape[2])))
         carry_back(diagonal, link, wide, right, np.zeros((s, right.shape[2])))
     substitute(diagonal, link, wide, rest, np.zeros((k, n)))
@@ -150,6 +157,7 @@ def _warm_chain() -> None:
         costs_of(one, one, place, no, alike)
     short_costs(one, one)
     nowhere = np.full((1, 2), -1)
+    scores_by_half(nowhere, one, one, 1)
     cross_information(np.zeros((1, 2)), n, n, columns, slab, np.zeros((1, ANY)), one, nowhere, nowhere)
     probe(np.zeros((n, PROBES)), n, n, columns, slab, np.zeros((1, ANY)), one)
     lag_one_correlation(slab, one)
