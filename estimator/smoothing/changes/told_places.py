@@ -57,7 +57,10 @@ class ToldPlace(NamedTuple):
 
 
 def ask_told_places(problem: Problem, solved: Solution) -> list[ToldPlace]:
-    """How likely each told place is to be wrong, the likeliest first.
+    """How likely each told place is to be wrong, the likeliest first; only of radios that are ranged.
+
+    Radios differ in what they send and hear by several dB, as much as a few metres make: powers alone cannot
+    tell a weak radio from one that stands elsewhere.
 
     Args:
         problem: of a window, or of the whole incident.
@@ -67,7 +70,9 @@ def ask_told_places(problem: Problem, solved: Solution) -> list[ToldPlace]:
     state, size = layout.state, layout.length * layout.width
     surely = state.ledger.table("stands")
     surely = surely[surely[:, 5] < physics.MISTOLD_SIGMA_M]
-    stands = [row for row in surely if _asked(state, int(row[1]))]
+    pairs = problem.rows.pairs
+    ranged = set(pairs[pairs[:, 1] == RANGE, 2:4].ravel().tolist())
+    stands = [row for row in surely if row[1] in ranged and _asked(state, int(row[1]))]
     if not stands:
         return []
     solved.chain.reduce()

@@ -11,6 +11,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
+from estimator.measurements.rssi import Rssi
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, outside
@@ -118,6 +119,25 @@ def test_anchors_that_stand_where_they_were_told_to_are_believed(anchors: int, u
     shown = [followed(world(seed, 0.0, anchors, unit)) for seed in SEEDS]
     assert not [named for one in shown for named in one.named]
     assert (np.concatenate([one.squares for one in shown]) < INSIDE).mean() > 0.93
+
+
+def heard(told: World, seed: int, weaker_db: float) -> World:
+    """The same with powers in the place of ranges; one radio is weaker than the others."""
+    chance, readings = np.random.default_rng(seed), list[AnyReading]()
+    for reading in told.readings:
+        if isinstance(reading, Range):
+            dbm = -45.0 - 22.0 * math.log10(max(reading.range_m, 0.3)) + float(chance.normal(0.0, 4.0))
+            dbm -= weaker_db if reading.b == WRONG else 0.0
+            readings.append(Rssi(t=reading.t, a=reading.a, b=reading.b, dbm=dbm))
+        else:
+            readings.append(reading)
+    return told._replace(readings=readings)
+
+
+@pytest.mark.parametrize("unit", [False, True])
+def test_a_weak_radio_of_which_powers_alone_tell_is_not_taken_to_stand_elsewhere(unit: bool) -> None:
+    shown = [followed(heard(world(seed, 0.0, 5, unit), seed, weaker_db=10.0)) for seed in SEEDS]
+    assert not [named for one in shown for named in one.named]
 
 
 def test_once_it_is_told_where_it_stands_it_is_believed_there() -> None:
