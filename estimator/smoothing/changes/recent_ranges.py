@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from estimator.fusion import physics
 from estimator.fusion.learned.rival import DOUBTED, LED_ASTRAY
-from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.ledger import GIVEN, RANGE, UNSEEN
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.motion.silence import SILENT_S
 from estimator.graph.chain_kernels import Integers
@@ -23,6 +23,8 @@ DISAGREEING = 0.75
 OUTLIER = 0.1
 """Probability of being good below which a range is one."""
 LATELY_S = 20.0
+WHOLE_S = 1e-3
+"""Closer to a whole second is one: epochs told to a millisecond are so in one of a thousand."""
 RANGES, RADIOS = 12, 2
 """So many ranges to so many that stand are needed to tell anything."""
 
@@ -70,15 +72,33 @@ class RecentRanges:
         doubted = node.rival is not None and node.rival.odds > DOUBTED
         return doubted or node.walk_factors[0] > LED_ASTRAY or self.disagree(index)
 
-    def led_since(self, index: int) -> float:
-        """From when on the unit of a walk has told all of its way (s)."""
+    def in_whole_seconds(self, index: int, late_s: float) -> bool:
+        """Whether all ranges of a walk's radio are stamped at whole seconds.
+
+        Args:
+            index: of the walk.
+            late_s: by how much they are put to earlier than they were stamped (s).
+        """
+        stamped = self.problem.rows.t[self._of(index, -np.inf, np.inf)[0]] + late_s
+        off_s = np.abs(stamped - np.round(stamped))
+        return len(stamped) >= RANGES and float(off_s.max()) < WHOLE_S
+
+    def led_since(self, index: int, closely: bool = False) -> float:
+        """From when on the unit of a walk has told all of its way (s).
+
+        Args:
+            index: of the walk.
+            closely: nothing is left out that it may have gone, for however short a time.
+        """
         layout = self.problem.layout
         steps = layout.state.ledger.table("steps")
-        mine = steps[steps[:, 1] == layout.walks[index].number][:, [0, 2]]
+        mine = steps[steps[:, 1] == layout.walks[index].number]
         if len(mine) == 0:
             return math.inf
-        silent = mine[mine[:, 0] - mine[:, 1] > SILENT_S, 0]
-        return float(silent.max(initial=mine[0, 1]))
+        silent = mine[:, 0] - mine[:, 2] > SILENT_S
+        if closely:
+            silent |= mine[:, GIVEN] == UNSEEN
+        return float(mine[silent, 0].max(initial=mine[0, 2]))
 
     def agree(self, index: int, since_t: float) -> float:
         """Share of the ranges of a walk's radio from an epoch on (s) that agree with it; 1 where none are."""

@@ -5,7 +5,7 @@ bend anywhere pays for it (MacKay, Bayesian interpolation, Neural Computation 4,
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -36,6 +36,10 @@ class RangedUnit(NamedTuple):
     t: Array
     ranged: RangedTrack
     led: Led
+
+    def stretched(self, scale: float) -> Self:
+        """The same, of a unit whose displacements are so many times as long."""
+        return self._replace(led=lambda t: scale * self.led(t))
 
 
 def fit_along_unit(heard: RangedUnit, at_m: Array, turns_rad: Array, late_s: float = 0.0) -> TrackFit:

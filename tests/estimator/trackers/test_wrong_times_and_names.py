@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from estimator.estimate import Notice
 from estimator.graph.dense import Array
@@ -60,6 +61,7 @@ def world(
     radios: Carried = as_they_are,
     units: Carried = as_they_are,
     twins: Mapping[str, tuple[float, float]] | None = None,
+    before_s: float = 0.5,
 ) -> World:
     """Two walk from goal to goal, and rest at some, among four radios whose places are known.
 
@@ -69,6 +71,7 @@ def world(
         radios: where those go that bear their names.
         units: where their units go.
         twins: where another radio of a name lies from `FROM_S` on: east, north (m).
+        before_s: so long before each whole second ranges are measured.
     """
     chance = np.random.default_rng(seed)
     anchors = {f"a{i}": chance.uniform(-25.0, 25.0, 2) for i in range(4)}
@@ -85,8 +88,8 @@ def world(
             told.append(
                 (second, Displacement(t=second, from_t=second - 1, node=name, delta_m=(east, north, 0.0)))
             )
-            t = second - 0.5
-            at = 0.5 * (by_radio[second] + by_radio[second - 1])
+            t = second - before_s
+            at = (1.0 - before_s) * by_radio[second] + before_s * by_radio[second - 1]
             places = [at, *([np.array(twins[name])] if twins and name in twins and second > FROM_S else [])]
             for place in places:
                 told += [
@@ -154,6 +157,51 @@ def test_ranges_by_another_clock_are_put_where_they_belong(late_s: float) -> Non
         assert found.said("are stamped") == {"ff0", "ff1"}
         assert max(found.wrong.values()) < TURNS_S
         assert all(np.mean(off_m[-50:]) < 0.5 for off_m in found.off_m.values())
+
+
+@pytest.mark.parametrize("before_s", [0.3, 0.6])
+@pytest.mark.parametrize("up", [False, True], ids=["down", "up"])
+def test_ranges_whose_epochs_are_rounded_to_whole_seconds_are_put_where_they_belong(
+    before_s: float, up: bool
+) -> None:
+    """Nothing disagrees enough to be an outlier: turns alone tell."""
+    for seed in SEEDS:
+        found = followed(world(seed, before_s if up else before_s - 1.0, before_s=before_s))
+        assert found.said("in whole seconds") == {"ff0", "ff1"}
+        assert max(found.wrong.values()) < NOTICED_S
+        assert all(np.mean(off_m[TURNS_S:]) < 0.3 for off_m in found.off_m.values())
+
+
+def lossy(told: World, chance: np.random.Generator) -> World:
+    """One in five displacements is lost."""
+    kept = [one for one in told.readings if not isinstance(one[1], Displacement) or chance.random() > 0.2]
+    return told._replace(readings=kept)
+
+
+def long_steps(told: World, _chance: np.random.Generator) -> World:
+    """Units think that steps are longer by a tenth."""
+
+    def longer(reading: AnyReading) -> AnyReading:
+        if not isinstance(reading, Displacement):
+            return reading
+        east, north, up = reading.delta_m
+        return replace(reading, delta_m=(1.1 * east, 1.1 * north, up))
+
+    return told._replace(readings=[(t, longer(reading)) for t, reading in told.readings])
+
+
+def faultless(told: World, _chance: np.random.Generator) -> World:
+    return told
+
+
+@pytest.mark.parametrize("fault", [faultless, lossy, long_steps])
+def test_ranges_that_are_measured_at_whole_seconds_stay_there(
+    fault: Callable[[World, np.random.Generator], World],
+) -> None:
+    for seed in SEEDS:
+        found = followed(fault(world(seed, before_s=0.0), np.random.default_rng(seed)))
+        assert found.said("are stamped") == set()
+        assert max(found.wrong.values()) < 5
 
 
 @pytest.mark.parametrize(
