@@ -9,6 +9,8 @@ from estimator.graph.dense import Array
 
 INSIDE = 5.99
 """What 95 % of true places are within: χ² with two degrees of freedom."""
+SURE = 13.8
+"""What one true place in a thousand is outside of: whoever is shown so is surely shown elsewhere."""
 
 
 def outside(

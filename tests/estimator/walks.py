@@ -16,6 +16,17 @@ from estimator.measurements.range import Range
 from estimator.measurements.retire import Retire
 from estimator.measurements.rssi import Rssi
 
+BEGINS = Node(
+    t=0.0,
+    node="ff1",
+    role="responder",
+    position_m=(0.0, 0.0, 0.0),
+    sigma_m=0.1,
+    heading_rad=0.0,
+    heading_sigma_rad=0.02,
+)
+"""A responder enters at the origin, and the turn of his unit's frame is known."""
+
 
 def two_responders(seconds: int = 60, seed: int = 1) -> list[AnyReading]:
     """Readings in order of epoch: one walker with PDR, one without, an unknown beacon, drops."""

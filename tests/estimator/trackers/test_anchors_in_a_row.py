@@ -11,8 +11,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import outside
-from tests.estimator.trackers.test_antenna_delays import SURE
+from tests.estimator.ellipses import SURE, outside
 
 ANCHORS_M = np.array([[0.0, 0.9, 2.0], [0.0, -0.9, 2.0], [0.0, 0.9, 0.5], [0.0, -0.9, 0.5]])
 BESIDE_M = np.array([12.0, -3.0, 1.5])

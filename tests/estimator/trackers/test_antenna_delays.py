@@ -14,9 +14,9 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import outside
+from tests.estimator.ellipses import SURE, outside
 
-SECONDS, SEEDS, SURE = 150, (41, 42, 43), 13.8
+SECONDS, SEEDS = 150, (41, 42, 43)
 RADIOS, UP_M, RANGE_SIGMA_M = 4, 1.0, 0.15
 ECHOES, ECHO_M = 0.05, 2.0
 

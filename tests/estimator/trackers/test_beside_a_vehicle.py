@@ -10,8 +10,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import outside
-from tests.estimator.trackers.test_antenna_delays import SURE
+from tests.estimator.ellipses import SURE, outside
 
 ANCHORS_M = np.array([[0.7, 0.9, 0.5], [2.6, 0.9, 2.0], [2.6, -0.9, 2.0], [2.6, -0.9, 0.5]])
 SECONDS, RATE_HZ, SPEED_MPS, UP_M, FAR_M = 40, 10, 1.1, 1.0, 25.0

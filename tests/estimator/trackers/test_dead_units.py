@@ -6,11 +6,9 @@ import pytest
 from estimator.measurements.displacement import Displacement
 from estimator.simulate import scenario
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import INSIDE, outside
+from tests.estimator.ellipses import INSIDE, SURE, outside
 
 DIES_S, END_S = 70, 200
-SURE = 13.8
-"""Squared distance of a place that one in a thousand exceeds."""
 
 
 @pytest.mark.parametrize("seed", [5, 41])

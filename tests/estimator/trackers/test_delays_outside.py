@@ -13,8 +13,7 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import INSIDE, outside
-from tests.estimator.trackers.test_antenna_delays import SURE
+from tests.estimator.ellipses import INSIDE, SURE, outside
 
 SECONDS, SEEDS = 120, (51, 52, 53)
 HALF_M, UP_M, RANGE_SIGMA_M = 6.0, 1.0, 0.1

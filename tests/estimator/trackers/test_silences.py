@@ -12,14 +12,13 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.ellipses import SURE
 from tests.estimator.trackers.entry import BASE, shown, squared_error
 
 LED_S, BACK_S = 60, 20
 PACE_MPS, STEP_SIGMA_M, RANGE_SIGMA_M = 0.5, 0.03, 0.1
 NORTH = np.array([0.0, 1.0])
 ANCHORS = {"a1": (-6.0, 0.0), "a2": (6.0, 0.0)}
-SURE = 13.8
-"""Squared distance of a place that one in a thousand exceeds."""
 
 
 def wandered(chance: np.random.Generator, at: Array, span_s: float) -> Array:

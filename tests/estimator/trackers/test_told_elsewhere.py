@@ -14,8 +14,7 @@ from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import INSIDE, outside
-from tests.estimator.trackers.test_antenna_delays import SURE
+from tests.estimator.ellipses import INSIDE, SURE, outside
 
 SECONDS, SEEDS = 100, (81, 82, 83, 84)
 OUT_M, HALF_M, UP_M, RANGE_SIGMA_M = 14.0, 9.0, 1.0, 0.12

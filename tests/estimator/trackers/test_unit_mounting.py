@@ -16,7 +16,7 @@ from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import outside
+from tests.estimator.ellipses import SURE, outside
 from tests.estimator.trackers.entry import BASE, shown
 
 SECONDS, APART_M, CRUMBS = 120, 14.0, 5
@@ -75,7 +75,7 @@ def followed(readings: list[AnyReading], way: dict[str, Array]) -> tuple[dict[st
         said += [notice.text for notice in tracker.take_notices() if "worn the wrong way" in notice.text]
         for name, places in way.items():
             found = shown(tracker, name)
-            wrong[name] += outside(found.position_m, found.covariance_m2, places[second]) > 13.8
+            wrong[name] += outside(found.position_m, found.covariance_m2, places[second]) > SURE
     return wrong, said
 
 
@@ -115,7 +115,7 @@ def test_powers_alone_leave_it_open_how_a_unit_is_worn(seed: int) -> None:
     assert said == []
     for name, track in BatchSmoother().smooth(readings).items():
         for p in track if name in way else ():
-            assert outside(p.position_m, p.covariance_m2, way[name][round(p.t)]) < 13.8
+            assert outside(p.position_m, p.covariance_m2, way[name][round(p.t)]) < SURE
 
 
 @pytest.mark.parametrize("worn", [MIRRORED, QUARTER])

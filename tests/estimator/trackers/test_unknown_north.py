@@ -12,8 +12,7 @@ from estimator.measurements.drop import Drop
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import INSIDE, outside
-from tests.estimator.trackers.test_antenna_delays import SURE
+from tests.estimator.ellipses import INSIDE, SURE, outside
 
 RATE_HZ, SPEED_MPS, SIGMA_M = 1, 1.0, 0.1
 CORNERS_M = np.array([[0.0, 0.0], [2.0, 22.0], [26.0, 24.0], [28.0, 6.0], [6.0, 4.0]])

@@ -13,7 +13,7 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import outside
+from tests.estimator.ellipses import SURE, outside
 from tests.estimator.trackers.entry import shown
 
 SECONDS, LEARNED_S, CRAWLS_S = 200, 30, 60
@@ -89,7 +89,7 @@ def wrong_s(reported: Reported, seed: int) -> tuple[int, float]:
         assert found.position_m is not None
         if second > LEARNED_S:
             off_m.append(float(np.hypot(*(np.array(found.position_m[:2]) - way[second]))))
-            wrong += off_m[-1] > 1.0 and outside(found.position_m, found.covariance_m2, way[second]) > 13.8
+            wrong += off_m[-1] > 1.0 and outside(found.position_m, found.covariance_m2, way[second]) > SURE
     return wrong, float(np.mean(off_m))
 
 

@@ -14,6 +14,7 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.ellipses import SURE
 
 STOREY_M = 3.5
 CORNERS_M = ((0.0, 0.0), (24.0, 0.0), (24.0, 12.0), (0.0, 12.0), (0.0, 0.0))
@@ -21,8 +22,6 @@ CORNERS_M = ((0.0, 0.0), (24.0, 0.0), (24.0, 12.0), (0.0, 12.0), (0.0, 0.0))
 STAIR = 8
 """Seconds on the stair, 0.8 m to the side in each: there and back."""
 REACH_M, DROPS_S = 18.0, (8, 20, 32, 44, 56, 68)
-SURE = 13.8
-"""Squared error in the plane that the true place exceeds once in a thousand."""
 
 
 def way_m() -> Array:

@@ -14,9 +14,9 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node, Role
 from estimator.measurements.range import Range
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import outside
+from tests.estimator.ellipses import SURE, outside
 
-SECONDS, FROM_S, SEEDS, SURE = 150, 60, (61, 62, 63), 13.8
+SECONDS, FROM_S, SEEDS = 150, 60, (61, 62, 63)
 RANGE_SIGMA_M, ECHOES, ECHO_M = 0.15, 0.03, 3.0
 NOTICED_S, TURNS_S = 15, 40
 """So long it takes to see that ways part, and to see some corners."""

@@ -10,21 +10,11 @@ from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m
 from estimator.fusion.motion.silence import went_on
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
-from estimator.measurements.node import Node
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import INSIDE, outside
+from tests.estimator.ellipses import INSIDE, SURE, outside
 from tests.estimator.inertial.boot_navigation import true_m
 from tests.estimator.inertial.gait import Stride, walked
-
-BEGINS = Node(
-    t=0.0,
-    node="ff1",
-    role="responder",
-    position_m=(0.0, 0.0, 0.0),
-    sigma_m=0.1,
-    heading_rad=0.0,
-    heading_sigma_rad=0.02,
-)
+from tests.estimator.walks import BEGINS
 
 
 def test_whoever_walks_goes_on_at_his_pace_and_whoever_stands_stays() -> None:
@@ -77,7 +67,7 @@ def test_a_boot_half_of_whose_readings_are_lost_is_where_its_ellipse_says(each: 
     heard = [r for i, r in enumerate(gait.readings(each)) if r.t < 4.0 or i % 2 == 0]
     shown = [e for e in pictures(list(heard)) if e.t > 1.0]
     off = [outside(e.position_m, e.covariance_m2, true_m(gait, e.t)) for e in shown]
-    assert max(off) < 13.8
+    assert max(off) < SURE
     assert np.mean(np.array(off) < INSIDE) > 0.9
     assert shown[-1].t > heard[-1].t - 2.0
     assert shown[-1].position_m is not None

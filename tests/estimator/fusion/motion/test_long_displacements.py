@@ -11,6 +11,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.ellipses import SURE
 from tests.estimator.trackers.entry import BASE, shown, squared_error
 
 BIAS_RADPS = 0.002
@@ -93,5 +94,5 @@ def test_who_comes_back_from_a_silent_search_is_shown_as_unsure_as_his_unit_leav
         tracker = KirchhoffTracker()
         tracker.fold(readings)
         squared.append(squared_error(shown(tracker), place))
-    assert max(squared) < 13.8
+    assert max(squared) < SURE
     assert 0.5 < float(np.mean(squared)) / 2.0 < 1.5

@@ -16,7 +16,7 @@ from estimator.measurements.retire import Retire
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import INSIDE, outside
+from tests.estimator.ellipses import INSIDE, SURE, outside
 from tests.estimator.inertial.boot_motion import BootMotion
 from tests.estimator.inertial.gait import AROUND, STEP_S, Gait, Stride, walked
 
@@ -280,7 +280,7 @@ def test_who_walks_when_his_unit_is_switched_on_is_where_his_ellipse_says(
         estimate = shown(tracker)
         off.append(outside(estimate.position_m, estimate.covariance_m2, truth_m(gait, estimate.t)))
     # Of thirty pictures one may be farther off than its ellipse of 95 %.
-    assert max(off) < 13.8
+    assert max(off) < SURE
     assert np.median(off) < INSIDE
 
 

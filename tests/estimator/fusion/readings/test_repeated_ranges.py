@@ -11,12 +11,11 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.ellipses import SURE
 from tests.estimator.trackers.entry import BASE, shown, squared_error
 
 RADIO = NodeState(node="b1", role="breadcrumb", mode="static", t=0.0)
 SECONDS, FALLS_SILENT_S = 90, 30
-SURE = 13.8
-"""Squared distance of a place that one in a thousand exceeds."""
 
 
 def walker(way_m: float) -> NodeState:

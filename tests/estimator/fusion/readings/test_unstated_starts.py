@@ -10,22 +10,11 @@ from msgspec.structs import replace
 from estimator.estimate import NodeEstimate
 from estimator.graph.dense import Array
 from estimator.measurements.displacement import Displacement
-from estimator.measurements.node import Node
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import INSIDE, outside
+from tests.estimator.ellipses import INSIDE, SURE, outside
+from tests.estimator.walks import BEGINS
 
 SECONDS, STANDS_S = 150, 8
-SURE = 13.8
-"""Squared distance of a place that one in a thousand exceeds."""
-BEGINS = Node(
-    t=0.0,
-    node="ff1",
-    role="responder",
-    position_m=(0.0, 0.0, 0.0),
-    sigma_m=0.1,
-    heading_rad=0.0,
-    heading_sigma_rad=0.02,
-)
 Reports = list[Displacement]
 
 
