@@ -12,7 +12,7 @@ from backend.tracking.alarms import AlarmEntry
 from backend.tracking.gateway_clocks import GatewayClock
 from backend.tracking.set_aside import after_batch
 from estimator.estimate import NodeEstimate, Notice
-from estimator.fusion.tick import names_of
+from estimator.fusion.holding import names_of
 from estimator.measurements import Alarm, AnyReading, Node, Retire, Status
 from estimator.measurements.status import AlarmKind
 

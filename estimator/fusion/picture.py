@@ -1,8 +1,8 @@
 """Where everybody is at the newest readings, for a picture: these come before their displacements."""
 
+from estimator.fusion.holding import flush, names_of
 from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.fusion.motion.dead_reckoning import go_on
-from estimator.fusion.tick import flush, names_of
 from estimator.measurements.altitude import Altitude
 from estimator.measurements.position import Position
 from estimator.measurements.range import Range

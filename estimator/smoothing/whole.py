@@ -11,9 +11,10 @@ import numpy as np
 
 from estimator.fusion.canonical_order import UNTIL_T
 from estimator.fusion.entering.beginnings import decide
+from estimator.fusion.holding import flush
 from estimator.fusion.memory.ledger import Ledger
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.tick import flush, fold_tick
+from estimator.fusion.tick import fold_tick
 from estimator.graph.robust import mixture_cost
 from estimator.inertial.samples import AnyFolded
 from estimator.smoothing.back_to_filter import hand_back, keep_keyframes

@@ -34,8 +34,8 @@ from estimator.smoothing.changes.told_places import (
     mistold,
 )
 from estimator.smoothing.images.alternatives import alternatives_now
-from estimator.smoothing.images.flip_ambiguity import heard_by
 from estimator.smoothing.images.heading_images import reports_from, to_other_sides
+from estimator.smoothing.images.heard_radios import heard_by
 from estimator.smoothing.images.image_starts import SAME_RAD
 from estimator.smoothing.images.likeliest_image import likeliest_image
 from estimator.smoothing.images.solutions import SLACKS_M

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from estimator.estimate import TrackPoint
 from estimator.evidence import Advice, Evidence
 from estimator.fusion.canonical_order import UNTIL_T, place_of
-from estimator.fusion.tick import names_of
+from estimator.fusion.holding import names_of
 from estimator.inertial.samples import AnyFolded, in_pieces
 from estimator.measurements import AnyReading
 from estimator.smoothing.images.alternatives import widen

@@ -18,8 +18,8 @@ import msgspec
 
 from estimator.estimate import Notice
 from estimator.fusion.canonical_order import tick_of
+from estimator.fusion.holding import names_of
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.tick import names_of
 from estimator.inertial.samples import AnyFolded, Samples, in_pieces
 from estimator.measurements import AnyReading
 from estimator.trackers.catch_up import CatchUp

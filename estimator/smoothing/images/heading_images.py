@@ -11,7 +11,8 @@ from estimator.fusion import physics
 from estimator.fusion.images import Image, turned_about
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import within_pi
-from estimator.smoothing.images.flip_ambiguity import Flip, HeardRadios, radios_of
+from estimator.smoothing.images.flip_ambiguity import Flip
+from estimator.smoothing.images.heard_radios import HeardRadios, radios_of
 from estimator.smoothing.keyframes.layout import Layout, Walk
 from estimator.smoothing.problem.newton import Problem
 

@@ -23,10 +23,10 @@ from estimator.smoothing.images.flip_ambiguity import (
     Flip,
     exposed,
     flips,
-    heard_by,
     loose_steps,
 )
 from estimator.smoothing.images.heading_images import faced, reports_from, turns, turns_whole
+from estimator.smoothing.images.heard_radios import heard_by
 from estimator.smoothing.images.image_estimates import Loose, apply_image, now_of
 from estimator.smoothing.images.image_starts import SAME_RAD, ImageSolution, ImageStart, Subject, heading
 from estimator.smoothing.images.near_radios import starts_near_radios

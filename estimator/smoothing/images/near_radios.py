@@ -16,7 +16,7 @@ from estimator.graph.dense import Array
 from estimator.measurements.rssi import DB_PER_NEPER
 from estimator.smoothing.images.alternatives import Mode, same_place
 from estimator.smoothing.images.earlier_images import CLEARER, LEAST
-from estimator.smoothing.images.flip_ambiguity import FIX
+from estimator.smoothing.images.heard_radios import FIX
 from estimator.smoothing.images.local_solution import local_solution
 from estimator.smoothing.keyframes.layout import Layout, Walk
 from estimator.smoothing.problem.newton import Problem

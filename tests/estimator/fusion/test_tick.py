@@ -1,63 +1,46 @@
-"""How old a fix is: as old as the newest reading that tells of its place."""
+"""In which order the readings of one tick are folded."""
 
-import pytest
-
-from estimator.estimate import NodeEstimate
+from estimator.fusion.memory.state import FusionState
+from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
-from estimator.measurements.altitude import Altitude, Pressure
-from estimator.measurements.bearing import Bearing
 from estimator.measurements.displacement import Displacement
-from estimator.measurements.drop import Drop
 from estimator.measurements.node import Node
-from estimator.measurements.position import Position
 from estimator.measurements.range import Range
-from estimator.measurements.rssi import Rssi
-from estimator.trackers.kirchhoff import KirchhoffTracker
+from estimator.measurements.retire import Retire
 
-SILENT_SINCE, NOW = 20.0, 80.0
-NAMED = Node(t=NOW, node="ff1", role="responder", callsign="E7-9", crew="E7")
-
-TELL_NOTHING: list[AnyReading] = [
-    NAMED,
-    Position(t=NOW, node="ff1", wgs84=(48.1, 11.5, 520.0)),
-    Pressure(t=NOW, node="ff1", pressure_pa=101_000.0),
-    Altitude(t=NOW, node="ff1", up_m=0.0),
-    Rssi(t=NOW, a="ff1", b="unplaced", dbm=-60.0),
-    Range(t=NOW, a="ff1", b="unplaced", range_m=7.0),
-    Bearing(t=NOW, a="ff1", b="unplaced", bearing_rad=0.1),
-]
-TELL: list[AnyReading] = [
-    Displacement(t=NOW, node="ff1", delta_m=(1.0, 0.0, 0.0)),
-    Position(t=NOW, node="ff1", position_m=(10.0, 0.0, 0.0)),
-    Rssi(t=NOW, a="ff1", b="base", dbm=-60.0),
-    Range(t=NOW, a="base", b="ff1", range_m=10.0),
-    Drop(t=NOW, node="b1", by="ff1"),
-]
+BASE = Node(t=0.0, node="base", role="base")
+ENTERS = Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.5)
+STEP = Displacement(t=1.0, from_t=0.0, node="ff1", delta_m=(1.0, 0.0, 0.0))
 
 
-def after(reading: AnyReading) -> NodeEstimate:
-    """A responder who has walked for 20 s, was silent for a minute, and is then named in a reading."""
-    tracker = KirchhoffTracker()
-    tracker.fold([Node(t=0.0, node="base", role="base"), Node(t=0.0, node="ff1", role="responder")])
-    steps = [Displacement(t=float(t), node="ff1", delta_m=(0.5, 0.0, 0.0)) for t in range(1, 21)]
-    tracker.fold([*steps, reading])
-    return next(estimate for estimate in tracker.estimates() if estimate.node == "ff1")
+def test_what_is_heard_of_who_is_retired_in_the_same_tick_still_counts() -> None:
+    heard = Range(t=0.8, a="ff1", b="base", range_m=0.8, technology="uwb")
+    retired = Retire(t=1.0, node="ff1")
+    fused = []
+    both: tuple[list[AnyReading], ...] = ([BASE, ENTERS, STEP, retired], [BASE, ENTERS, heard, STEP, retired])
+    for readings in both:
+        state = FusionState()
+        fold_tick(state, 1.0, readings)
+        assert state.nodes["ff1"].mode == "retired"
+        fused.append(state.counts["fused"])
+    assert fused[1] == fused[0] + 1
 
 
-@pytest.mark.parametrize("reading", TELL_NOTHING, ids=lambda reading: type(reading).__name__)
-def test_what_says_nothing_of_a_place_leaves_the_fix_as_old_as_it_was(reading: AnyReading) -> None:
-    """Who was lost would be shown as found again, where he was last heard of."""
-    assert after(reading).t == SILENT_SINCE
+def test_who_is_retired_and_introduced_again_in_one_tick_is_back() -> None:
+    state = FusionState()
+    fold_tick(state, 1.0, [BASE, ENTERS, STEP])
+    called = Node(t=1.7, node="ff1", role="responder", position_m=(5.0, 0.0, 0.0), sigma_m=0.5)
+    fold_tick(state, 2.0, [Retire(t=1.3, node="ff1"), called])
+    fold_tick(state, 3.0, [Displacement(t=3.0, from_t=2.0, node="ff1", delta_m=(1.0, 0.0, 0.0))])
+    assert state.nodes["ff1"].mode != "retired"
+    assert abs(state.place(state.nodes["ff1"])[0] - 6.0) < 0.1
 
 
-def test_an_altimeter_tells_of_a_place_once_it_is_zeroed() -> None:
-    tracker = KirchhoffTracker()
-    tracker.fold([Node(t=0.0, node="base", role="base"), Node(t=0.0, node="ff1", role="responder")])
-    tracker.fold([Displacement(t=float(t), node="ff1", delta_m=(0.5, 0.0, 0.0)) for t in range(1, 21)])
-    tracker.fold([Altitude(t=t, node="ff1", up_m=0.0) for t in (*range(1, 7), NOW)])
-    assert next(estimate for estimate in tracker.estimates() if estimate.node == "ff1").t == NOW
-
-
-@pytest.mark.parametrize("reading", TELL, ids=lambda reading: type(reading).__name__)
-def test_what_tells_of_a_place_makes_the_fix_new(reading: AnyReading) -> None:
-    assert after(reading).t == NOW
+def test_what_was_noticed_in_a_tick_is_not_told_again_in_the_next() -> None:
+    state = FusionState()
+    fold_tick(
+        state, 1.0, [BASE, ENTERS, Displacement(t=1.0, from_t=0.0, node="ff1", delta_m=(50.0, 0.0, 0.0))]
+    )
+    assert [notice.node for notice in state.notices] == ["ff1"]
+    fold_tick(state, 2.0, [])
+    assert state.notices == []

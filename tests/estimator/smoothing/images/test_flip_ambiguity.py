@@ -10,15 +10,8 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.images.flip_ambiguity import (
-    LIVE,
-    WHOLE,
-    exposed,
-    flips,
-    heard_by,
-    loose_steps,
-    radios_of,
-)
+from estimator.smoothing.images.flip_ambiguity import LIVE, WHOLE, exposed, flips, loose_steps
+from estimator.smoothing.images.heard_radios import heard_by
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from tests.estimator.smoothing.windows import fused, problem_of
@@ -99,15 +92,6 @@ def test_who_was_between_other_radios_before_and_after_may_have_been_beyond_the_
     )
 
 
-def test_two_radios_on_one_mast_are_on_no_line() -> None:
-    """As on a vehicle: not they, but the next radio tells in which line he may be at his image."""
-    mast = {"a1": (0.0, 0.0), "a2": (0.0, 0.05), "a3": (20.0, 0.0)}
-    problem, solved = solved_of(crossing(mast))
-    heard = heard_by(problem, solved, problem.layout.walks[0])
-    assert sorted(at_m[0].round(1) for at_m in radios_of(heard)) == [0.0, 20.0]
-    assert len(radios_of(heard.some(heard.radio_m[:, 0] < 10.0))) == 1
-
-
 def test_who_hears_radios_about_him_cannot_turn_back_unseen() -> None:
     problem, solved = solved_of(crossing(CORNERS))
     walk = problem.layout.walks[0]
@@ -115,15 +99,6 @@ def test_who_hears_radios_about_him_cannot_turn_back_unseen() -> None:
     found = flips(heard, places(problem, solved), walk, loose_steps(problem, solved, 0), 40.0, LIVE)
     assert all(problem.layout.grid[flip.since] > 35.0 for flip in found)
     assert not exposed(heard, 40.0)
-
-
-def test_what_was_heard_of_radios_is_all_that_stand() -> None:
-    problem, solved = solved_of(crossing(TWO))
-    heard = heard_by(problem, solved, problem.layout.walks[0])
-    assert sorted(set(map(tuple, heard.radio_m.round(1).tolist()))) == sorted(TWO.values())
-    ranges_m = np.hypot(*(heard.here_m - heard.radio_m).T)
-    measured = [r.range_m for r in crossing(TWO) if isinstance(r, Range)]
-    assert sorted(ranges_m) == pytest.approx(sorted(measured), abs=0.5)
 
 
 @given(st.integers(10, 25))

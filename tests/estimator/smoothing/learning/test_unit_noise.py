@@ -7,9 +7,10 @@ import pytest
 from msgspec.structs import replace
 
 from estimator.fusion import physics
+from estimator.fusion.holding import flush
 from estimator.fusion.memory.ledger import Ledger
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.tick import flush, fold_tick
+from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.position import Position

@@ -1,0 +1,178 @@
+"""What is held against the graph together, and when: some wait for displacements that cover their epochs."""
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+
+import numpy as np
+from msgspec.structs import replace
+
+from estimator.fusion import physics
+from estimator.fusion.entering import beginnings
+from estimator.fusion.memory.hearing import Crossing
+from estimator.fusion.memory.state import AnyHeld, FusionState
+from estimator.fusion.motion.constant_velocity import move_free
+from estimator.fusion.motion.dead_reckoning import drift_units
+from estimator.fusion.readings import absolute, drops
+from estimator.fusion.readings.pairs import AnyPair, Pairs
+from estimator.fusion.rows.rows import Single, table_of
+from estimator.fusion.update import update
+from estimator.inertial.samples import AnyFolded
+from estimator.measurements.altitude import Altitude, Pressure
+from estimator.measurements.bearing import Bearing
+from estimator.measurements.drop import Drop
+from estimator.measurements.node import MOVING_ROLES
+from estimator.measurements.position import Position
+from estimator.measurements.range import Range
+from estimator.measurements.rssi import Rssi
+
+SAME_EPOCH_S = 1e-6
+PAIRS = (Range, Rssi, Bearing, Crossing)
+HELD = (*PAIRS, Position, Altitude, Pressure, Drop)
+
+
+def names_of(reading: AnyFolded | Crossing) -> tuple[str, ...]:
+    """The nodes that a reading names."""
+    if isinstance(reading, PAIRS):
+        return reading.a, reading.b
+    if isinstance(reading, Drop):
+        return reading.node, reading.by
+    return (reading.node,)
+
+
+def covered(
+    state: FusionState, readings: Sequence[AnyHeld], late_t: float, unwaited: set[str]
+) -> list[AnyHeld]:
+    """Readings to be held now; for the others a displacement that covers their epoch may still come.
+
+    Args:
+        state: the fusion: takes those that wait.
+        readings: in order of epoch.
+        late_t: epoch before which none waits.
+        unwaited: nodes for whose displacements nothing waits.
+    """
+    units = _told_until(state)
+    soonest = min(units.values(), default=math.inf)
+    ready: list[AnyHeld] = []
+    waiting: list[AnyHeld] = []
+    for reading in readings:
+        t = reading.t
+        if t <= soonest or t < late_t:
+            ready.append(reading)
+            continue
+        names = names_of(reading)
+        wait = t > min(units.get(name, math.inf) for name in names)
+        (waiting if wait and unwaited.isdisjoint(names) else ready).append(reading)
+    state.waiting = tuple(waiting)
+    return ready
+
+
+def _told_until(state: FusionState) -> dict[str, float]:
+    """The epoch up to which each unit's own way is known, by node (s)."""
+    return {n.node: n.pose_t + SAME_EPOCH_S for n in state.nodes.values() if n.mode == "unit"}
+
+
+def flush(state: FusionState) -> None:
+    """Hold what waits for a displacement against the newest positions."""
+    waiting, state.waiting = state.waiting, ()
+    for part in parts_of(state, waiting):
+        if part:
+            hold(state, part, [])
+
+
+def parts_of(state: FusionState, readings: Sequence[AnyHeld]) -> list[Sequence[AnyHeld]]:
+    """Readings that are held together: all, but by parts of a tick where nobody knows how someone has moved.
+
+    A unit's own way tells where it stood at each epoch that it covers. A velocity that changes tells so for a
+    moment only, and of who is silent nothing is told: held at one epoch, seconds of his readings would show
+    him where he was on average, and sure of it.
+    """
+    loose = {
+        n.node for n in state.nodes.values() if n.role in MOVING_ROLES and n.mode in ("free", "undecided")
+    }
+    units = _told_until(state)
+    soonest = min(units.values(), default=math.inf)
+    if not loose and all(reading.t <= soonest for reading in readings):
+        return [readings]
+    together: list[AnyHeld] = []
+    parts: dict[int, list[AnyHeld]] = {}
+    for reading in readings:
+        names = names_of(reading)
+        if loose.isdisjoint(names) and reading.t <= min(units.get(name, math.inf) for name in names):
+            together.append(reading)
+        else:
+            parts.setdefault(int(reading.t / physics.FREE_TICK_S), []).append(reading)
+    return [together, *(parts[k] for k in sorted(parts))]
+
+
+def hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single]) -> None:
+    """Hold readings against the graph: fixes, heights and drops, then pairs, all solved together.
+
+    Args:
+        state: the fusion.
+        readings: in order of epoch.
+        singles: what is held along with them; more is added.
+    """
+    until: dict[str, float] = {}
+    placed: set[str] = set()
+    between: list[AnyPair] = []
+    others: list[AnyHeld] = []
+    for reading in readings:
+        if isinstance(reading, (Range, Position)):
+            placed.update(names_of(reading))
+        if isinstance(reading, PAIRS):
+            between.append(reading)
+            until[reading.a] = until[reading.b] = reading.t
+        else:
+            others.append(reading)
+            until.update(dict.fromkeys(names_of(reading), reading.t))
+    _carry(state, until, placed)
+    pairs = Pairs(state)
+    told = pairs.fused_t
+    for reading in others:
+        if isinstance(reading, (Position, Altitude, Pressure)):
+            found = (
+                absolute.fix(state, reading)
+                if isinstance(reading, Position)
+                else absolute.height(state, reading)
+            )
+            singles.extend(found)
+            if found:
+                told[reading.node] = reading.t
+        elif isinstance(reading, Drop) and drops.hold(state, reading):
+            told[reading.node] = told[reading.by] = reading.t
+    pairs.take(between)
+    rows = pairs.enter()
+    table = table_of(state.graph.starts, singles, rows)
+    epochs = np.concatenate([np.zeros(len(table) - len(rows)), pairs.epochs]) if singles else pairs.epochs
+    update(state, table, epochs)
+    beginnings.decide(state)
+    for name, heard_t in until.items():
+        node = state.nodes.get(name)
+        if node is None or node.mode == "retired":
+            continue
+        # What says nothing of a place leaves its fix as old as it was.
+        t = heard_t if node.mode in ("undecided", "fixed") else told.get(name, node.t)
+        if node.t < t:
+            state.nodes[name] = replace(node, t=t)
+
+
+def _carry(state: FusionState, until: Mapping[str, float], placed: Collection[str]) -> None:
+    """Move nodes without newer displacements to the newest epoch at which something is held against them.
+
+    Args:
+        state: the fusion.
+        until: that epoch, by node (s).
+        placed: of whom a range or a fix tells there.
+    """
+    drifting: dict[str, float] = {}
+    silent: dict[str, float] = {}
+    for name, t in until.items():
+        node = state.nodes.get(name)
+        if node is not None and node.mode == "free":
+            drifting[name] = t
+        elif node is not None and node.mode == "unit" and t > node.pose_t + SAME_EPOCH_S:
+            silent[name] = t
+    if drifting:
+        move_free(state, drifting)
+    if silent:
+        drift_units(state, silent, placed=placed)
