@@ -21,6 +21,8 @@ test("where there is no room it says who and how old, and a storey only if that 
   expect(labelWords(upstairs, ALL).short).toBe("E7-1 · 3 s");
   expect(labelWords(aNode({ level: 1, level_p: 0.64 }), ALL).short).toBe("E7-1 · 3 s · Level 1, 64 %");
   expect(labelWords(upstairs, { ...ALL, now: NOON + 20 }).short).toBe("E7-1 · STALE 20 s");
+  expect(labelWords(aNode({ level: 1, level_p: 0.64 }), ALL).brief).toBe("E7-1 · 3 s · storey?");
+  expect(labelWords(upstairs, ALL).brief).toBe("E7-1 · 3 s");
 });
 
 test("on a phone's map it says that the storey is not sure, for which one there is no room", () => {

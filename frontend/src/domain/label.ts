@@ -22,6 +22,8 @@ export interface LabelWords {
   readonly whole: readonly string[];
   /** Its one line, where there is no room: without the storey, unless that is not sure. */
   readonly short: string;
+  /** Where there is no room for that either: that the storey is not sure, not which one it may be. */
+  readonly brief: string;
 }
 
 /** `error_m`: how far off the position may be, where that is not seen on the map. */
@@ -40,8 +42,11 @@ export function labelWords(
   const old = error_m === null ? heard : `${heard} · ± ${roughly(error_m)}`;
   const said = saysStorey(node, level, levels);
   const storey = ` · ${storeyWords(node, levels)}`;
-  const short = `${name} · ${old}${said && storeyUnsure(node) ? (narrow ? " · storey?" : storey) : ""}`;
-  return { whole: [name, said ? old + storey : old], short };
+  const line = `${name} · ${old}`;
+  const unsure = said && storeyUnsure(node);
+  const brief = unsure ? `${line} · storey?` : line;
+  const short = unsure && !narrow ? line + storey : brief;
+  return { whole: [name, said ? old + storey : old], short, brief };
 }
 
 /** Not of who flies, nor of who stands, for sure, on the storey that is shown. */

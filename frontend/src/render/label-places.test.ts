@@ -1,4 +1,5 @@
 import { expect, test } from "vitest";
+import { distance, overlap } from "./boxes";
 import { labelPlaces, MOST_LED, type Spot, type Wanted } from "./label-places";
 import type { Box } from "./layer";
 
@@ -11,7 +12,7 @@ function wants(node: string, x: number, y: number, always = false, rank = 0): Wa
     { width: 130, height: 37 },
     { width: 80, height: 21 },
   ];
-  return { node, x, y, away: MARK + 6, whole, short, always, rank };
+  return { node, x, y, away: MARK + 6, whole, short, brief: short, always, rank };
 }
 
 const markOf = ({ x, y }: Wanted): Box => ({ x: x - MARK, y: y - MARK, width: 2 * MARK, height: 2 * MARK });
@@ -20,17 +21,13 @@ function placed(all: readonly Wanted[], before = NOWHERE_BEFORE, covered: readon
   return labelPlaces(all, all.map(markOf), covered, MAP, before);
 }
 
-function overlap(a: Box, b: Box): boolean {
-  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
-}
-
 /** So many shoulder to shoulder, a few pixels apart. */
 const crowd = (people: number) =>
   Array.from({ length: people }, (_, i) => wants(`ff${i}`, 400 + 9 * (i % 4), 300 + 7 * Math.floor(i / 4)));
 
 test("who stands alone has the whole label at the right of the mark", () => {
   const spot = placed([wants("ff1", 400, 300)]).get("ff1");
-  expect(spot?.kind).toBe("whole");
+  expect(spot?.text).toBe("whole");
   expect(spot?.box).toEqual({ x: 419, y: 281.5, width: 130, height: 37 });
 });
 
@@ -51,19 +48,61 @@ test.each([2, 3, 6, 12])(
   },
 );
 
-test("a label beside the mark, whole or short, comes before one with a line", () => {
-  const kinds = [...placed(crowd(12)).values()].map(({ kind }) => kind);
-  expect(kinds).toContain("whole");
-  expect(kinds.lastIndexOf("whole")).toBeLessThan(kinds.indexOf("led"));
+test("a label beside the mark comes before one with a line, the whole one first", () => {
+  const apart = [wants("ff1", 400, 100), wants("ff2", 400, 300), wants("ff3", 400, 500)];
+  expect([...placed(apart).values()].map(({ text, led }) => [text, led])).toEqual(
+    apart.map(() => ["whole", false]),
+  );
+  const buttons = { x: 505, y: 0, width: 295, height: 600 };
+  const all = [wants("ff1", 400, 100), wants("ff2", 400, 40), wants("ff3", 400, 160), wants("ff4", 310, 100)];
+  const { text, led } = placed(all, NOWHERE_BEFORE, [buttons]).get("ff1") ?? {};
+  expect([text, led]).toEqual(["short", false]);
+});
+
+test("a label is not written where it would be taken for another's, with a line rather than so", () => {
+  const [walker, other] = [wants("walker", 400, 300), wants("other", 300, 255)];
+  const buttons = { x: 414, y: 0, width: 386, height: 600 };
+  const marks = [walker, other].map(markOf);
+  for (const covered of [[buttons], [buttons, { x: 0, y: 325, width: 800, height: 30 }]]) {
+    const spot = labelPlaces([walker], marks, covered, MAP, NOWHERE_BEFORE).get("walker");
+    if (spot === undefined) throw new Error("the walker has no label");
+    expect(distance(spot.box, other.x, other.y)).toBeGreaterThan(
+      spot.led ? other.away : 1.5 * distance(spot.box, walker.x, walker.y),
+    );
+  }
+});
+
+test("a line goes between the marks of others: the label is not taken for theirs", () => {
+  const amidst = wants("amidst", 400, 300);
+  const others = [wants("e", 456, 300), wants("w", 344, 300), wants("n", 400, 244), wants("s", 400, 356)];
+  const marks = [amidst, ...others].map(markOf);
+  const spot = labelPlaces([amidst], marks, [], MAP, NOWHERE_BEFORE).get("amidst");
+  expect(spot?.led).toBe(true);
+  expect(spot?.line.some((part) => others.map(markOf).some((mark) => overlap(part, mark)))).toBe(false);
+  for (const { x, y, away } of others) expect(spot && distance(spot.box, x, y)).toBeGreaterThan(away);
+});
+
+test("where there is no room for what else would be said, a briefer label says whose mark it is", () => {
+  const long = {
+    ...wants("unsure", 400, 300),
+    short: { width: 260, height: 21 },
+    whole: { width: 240, height: 37 },
+  };
+  const between = (left: number, right: number) => {
+    const sides = [
+      { x: 0, y: 0, width: left, height: 600 },
+      { x: right, y: 0, width: 800 - right, height: 600 },
+    ];
+    return placed([long], NOWHERE_BEFORE, sides).get("unsure")?.text;
+  };
+  expect([between(250, 550), between(300, 500)]).toEqual(["whole", "brief"]);
 });
 
 test("among more than can be followed those who matter more have their lines", () => {
   const all = crowd(MOST_LED + 20).map((label, at) => ({ ...label, rank: at < 2 ? 1 : 0 }));
   const spots = placed(all);
   expect([spots.has("ff0"), spots.has("ff1")]).toEqual([true, true]);
-  expect([...spots].filter(([node, { kind }]) => kind === "led" && node !== "ff0" && node !== "ff1")).toEqual(
-    [],
-  );
+  expect([...spots].filter(([node, { led }]) => led && node !== "ff0" && node !== "ff1")).toEqual([]);
 });
 
 test("a line goes round the label of another where there is a way", () => {
@@ -71,13 +110,13 @@ test("a line goes round the label of another where there is a way", () => {
   const walls = { x: 200, y: 200, width: 270, height: 200 };
   const spots = labelPlaces([other, wants("walled-in", 400, 300)], [walls], [], MAP, NOWHERE_BEFORE);
   const [beside, led] = [spots.get("other"), spots.get("walled-in")];
-  expect([beside?.kind, led?.kind]).toEqual(["whole", "led"]);
+  expect([beside?.text, beside?.led, led?.led]).toEqual(["whole", false, true]);
   expect(led?.line.some((part) => beside && overlap(part, beside.box))).toBe(false);
 });
 
 test("of more people than anyone could follow lines to, none has a line", () => {
   const spots = placed(crowd(MOST_LED + 1));
-  expect([...spots.values()].some(({ kind }) => kind === "led")).toBe(false);
+  expect([...spots.values()].some(({ led }) => led)).toBe(false);
   expect(spots.size).toBeGreaterThan(0);
 });
 
@@ -92,9 +131,9 @@ test("a label stays on its side of the mark when the better one becomes free", (
 test("a short label becomes whole again as soon as there is room", () => {
   const all = crowd(12);
   const crowded = placed(all);
-  const short = all.find(({ node }) => crowded.get(node)?.kind !== "whole");
+  const short = all.find(({ node }) => crowded.get(node)?.text !== "whole");
   if (short === undefined) throw new Error("all twelve labels are whole");
-  expect(placed([short], crowded).get(short.node)?.kind).toBe("whole");
+  expect(placed([short], crowded).get(short.node)?.text).toBe("whole");
 });
 
 test("no label lies under the buttons; who is in alarm is labelled also where nothing is free", () => {
@@ -124,7 +163,7 @@ const NAME = { x: 430, y: 290, width: 50, height: 14 };
 test("a label that looks for its place leaves the name of a breadcrumb free, where there is room beside it", () => {
   const all = [wants("ff1", 400, 300)];
   const spot = labelPlaces(all, all.map(markOf), [], MAP, NOWHERE_BEFORE, [NAME]).get("ff1");
-  expect(spot?.kind).toBe("whole");
+  expect(spot?.text).toBe("whole");
   expect(overlap(spot?.box ?? NAME, NAME)).toBe(false);
 });
 
@@ -138,5 +177,5 @@ test("a label is not given up for a name: somebody matters more than what he dro
   const all = [wants("ff1", 400, 300)];
   const everywhere = { x: 0, y: 0, ...MAP };
   const spot = labelPlaces(all, all.map(markOf), [], MAP, NOWHERE_BEFORE, [everywhere]).get("ff1");
-  expect(spot?.kind).toBe("whole");
+  expect(spot?.text).toBe("whole");
 });

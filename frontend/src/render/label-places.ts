@@ -1,4 +1,5 @@
 /** Where labels go: beside their marks while there is room, else shortened, else farther off with a line to the mark. */
+import { distance, inside, middle, nearest, Occupied, wider } from "./boxes";
 import type { Box } from "./layer";
 
 export interface Size {
@@ -16,18 +17,21 @@ export interface Wanted {
   readonly whole: Size;
   /** Where there is no room for the whole. */
   readonly short: Size;
+  /** Where else there would be no label. */
+  readonly brief: Size;
   /** It is shown, even if it covers others. */
   readonly always: boolean;
   /** How much it matters among the others. */
   readonly rank: number;
 }
 
-/** Whole or short beside the mark, or short and led to it by a line. */
-export type Kind = "whole" | "short" | "led";
+/** How much is written. */
+export type Text = "whole" | "short" | "brief";
 
-/** The place of a label, and which of the places of its kind it is. */
+/** The place of a label: beside the mark or led to it by a line, and which of these places it is. */
 export interface Spot {
-  readonly kind: Kind;
+  readonly text: Text;
+  readonly led: boolean;
   readonly index: number;
   readonly box: Box;
   /** What the line to the mark takes up; nothing beside it. */
@@ -41,15 +45,17 @@ const RINGS_PX = [26, 52, 78];
 /** Who is not heard is looked for in the thick of a crowd as well: how much farther a label may go. */
 const FAR_RINGS_PX = [...RINGS_PX, 117, 156, 195];
 const ON_RING = 12;
+/** A label is taken to be of the mark that is nearest: any other is to be so many times as far away as its own. */
+const OTHERS_FARTHER = 1.5;
 /** A line is held clear of labels in squares of this size. */
 const LINE_PX = 8;
-const CELL_PX = 64;
 
 /**
  * Find a place for each label for which there is one.
  *
  * A label keeps its place among those of its kind while that is free: one that jumps about is not read. One that
- * looks for another place takes the first that hides nothing at all, where there is one.
+ * looks for another place takes the first that hides nothing at all, where there is one. A place at which it would be
+ * taken for another's, and a line over another's mark, come after all others.
  *
  * @param wanted those that matter most first.
  * @param marks what no label may cover.
@@ -68,7 +74,7 @@ export function labelPlaces(
 ): Map<string, Spot> {
   const found = new Map<string, Spot>();
   const [everything, over] = [new Occupied([...marks, ...covered]), new Occupied(covered)];
-  const written = new Occupied(covered);
+  const [written, marked] = [new Occupied(covered), new Occupied(marks)];
   const better = new Occupied(shunned);
   const free = (places: readonly Spot[], occupied: Occupied) =>
     places.find(({ box }) => inside(box, map) && occupied.leaves(box));
@@ -79,16 +85,34 @@ export function labelPlaces(
   );
   for (const label of wanted) {
     const last = before.get(label.node);
-    const pick = (places: readonly Spot[]) => {
-      const room = places.filter(({ box }) => inside(box, map) && everything.leaves(box));
-      const kept = room.find(({ kind, index }) => kind === last?.kind && index === last.index);
-      return kept ?? room.find(({ box }) => better.leaves(box)) ?? room[0];
+    const wasThere = (spot: Spot) =>
+      spot.text === last?.text && spot.led === last.led && spot.index === last.index;
+    const pick = (places: readonly Spot[], suits: (spot: Spot) => boolean = () => true) => {
+      const room = places.filter(
+        (spot) => inside(spot.box, map) && everything.leaves(spot.box) && suits(spot),
+      );
+      return room.find(wasThere) ?? room.find(({ box }) => better.leaves(box)) ?? room[0];
     };
+    const plain = (spot: Spot) => isPlain(label, spot, marked, wasThere(spot) ? 1 : OTHERS_FARTHER);
     const whole = beside("whole", label);
-    let spot = pick(whole) ?? pick(beside("short", label));
-    if (spot === undefined && (label.always || led.get(label.rank))) {
-      const far = farOff(label);
-      spot = pick(far.filter(clear)) ?? pick(far);
+    let spot = pick(whole, plain);
+    if (spot === undefined) {
+      const [short, brief] = [beside("short", label), beside("brief", label)];
+      const leads = label.always || led.get(label.rank);
+      const [farShort, farBrief] = leads ? [farOff("short", label), farOff("brief", label)] : [[], []];
+      const plainLine = (far: Spot) => clear(far) && plain(far);
+      spot =
+        pick(short, plain) ??
+        pick(farShort, plainLine) ??
+        pick(brief, plain) ??
+        pick(farBrief, plainLine) ??
+        pick(whole) ??
+        pick(short) ??
+        pick(farShort, clear) ??
+        pick(farBrief, clear) ??
+        pick(farShort) ??
+        pick(brief) ??
+        pick(farBrief);
     }
     if (label.always) spot ??= free(whole, written) ?? free(whole, over) ?? whole[0];
     if (spot === undefined) continue;
@@ -101,8 +125,31 @@ export function labelPlaces(
   return found;
 }
 
+/**
+ * Whether a label at that place is taken to be of its own mark: all others are farther from it, and its line goes
+ * over none of them.
+ *
+ * @param farther how many times as far away as its own mark, or as a label beside it.
+ */
+function isPlain(
+  { x, y, away }: Wanted,
+  { box, led, line }: Spot,
+  marked: Occupied,
+  farther: number,
+): boolean {
+  const isOther = (mark: Box) => {
+    const [otherX, otherY] = middle(mark);
+    return Math.hypot(otherX - x, otherY - y) > 0.5;
+  };
+  const least = farther * (led ? away : distance(box, x, y));
+  if (!marked.leaves(wider(box, least), (mark) => isOther(mark) && distance(box, ...middle(mark)) < least)) {
+    return false;
+  }
+  return line.every((part) => distance(part, x, y) < away || marked.leaves(part, (mark) => isOther(mark)));
+}
+
 /** At the right, left, below or above, then at the corners. */
-function beside(kind: "whole" | "short", { x, y, away, [kind]: { width, height } }: Wanted): Spot[] {
+function beside(text: Text, { x, y, away, [text]: { width, height } }: Wanted): Spot[] {
   const [right, left, below, above] = [x + away, x - away - width, y + away / 2, y - away / 2 - height];
   const corners: [number, number][] = [
     [right, y - height / 2],
@@ -114,11 +161,17 @@ function beside(kind: "whole" | "short", { x, y, away, [kind]: { width, height }
     [left, below],
     [left, above],
   ];
-  return corners.map(([x, y], index) => ({ kind, index, box: { x, y, width, height }, line: [] }));
+  return corners.map(([x, y], index) => ({
+    text,
+    led: false,
+    index,
+    box: { x, y, width, height },
+    line: [],
+  }));
 }
 
 /** All round, the nearer ring first. */
-function farOff({ x, y, away, rank, short: { width, height } }: Wanted): Spot[] {
+function farOff(text: Text, { x, y, away, rank, [text]: { width, height } }: Wanted): Spot[] {
   return (rank > 0 ? FAR_RINGS_PX : RINGS_PX).flatMap((beyond, ring) =>
     Array.from({ length: ON_RING }, (_, step): Spot => {
       const turn = (2 * Math.PI * step) / ON_RING;
@@ -128,16 +181,9 @@ function farOff({ x, y, away, rank, short: { width, height } }: Wanted): Spot[] 
         width,
         height,
       };
-      return { kind: "led", index: ring * ON_RING + step, box, line: lineTo(box, x, y) };
+      return { text, led: true, index: ring * ON_RING + step, box, line: lineTo(box, x, y) };
     }),
   );
-}
-
-/** The nearest point of a box. */
-export function nearest(box: Box, x: number, y: number): [number, number] {
-  const between = (value: number, least: number, size: number) =>
-    Math.min(Math.max(value, least), least + size);
-  return [between(x, box.x, box.width), between(y, box.y, box.height)];
 }
 
 /** The line from a place to a box, in small squares. */
@@ -149,45 +195,4 @@ function lineTo(box: Box, x: number, y: number): Box[] {
     const [middleX, middleY] = [x + (toX - x) * share, y + (toY - y) * share];
     return { x: middleX - LINE_PX / 2, y: middleY - LINE_PX / 2, width: LINE_PX, height: LINE_PX };
   });
-}
-
-function inside({ x, y, width, height }: Box, map: Size): boolean {
-  return x >= 0 && y >= 0 && x + width <= map.width && y + height <= map.height;
-}
-
-/** Boxes by the cells of a grid that they touch, so that each is held against its neighbours alone. */
-class Occupied {
-  private readonly cells = new Map<number, Box[]>();
-
-  constructor(boxes: readonly Box[]) {
-    for (const box of boxes) this.add(box);
-  }
-
-  add(box: Box): void {
-    for (const cell of cellsOf(box)) {
-      const there = this.cells.get(cell);
-      if (there) there.push(box);
-      else this.cells.set(cell, [box]);
-    }
-  }
-
-  /** Whether a box overlaps none of them. */
-  leaves(box: Box): boolean {
-    return !cellsOf(box).some((cell) => this.cells.get(cell)?.some((other) => overlap(box, other)));
-  }
-}
-
-function cellsOf({ x, y, width, height }: Box): number[] {
-  const cells: number[] = [];
-  for (let row = Math.floor(y / CELL_PX); row * CELL_PX <= y + height; row += 1) {
-    for (let column = Math.floor(x / CELL_PX); column * CELL_PX <= x + width; column += 1) {
-      cells.push(row * 1024 + column);
-    }
-  }
-  return cells;
-}
-
-/** Whether two boxes have a part in common. */
-export function overlap(a: Box, b: Box): boolean {
-  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }

@@ -1,10 +1,11 @@
 /** Who it is and how old the fix is, of each responder. */
 import { isLowOnAir } from "../domain/air";
 import { borderOnMap, ce95, ellipseOf } from "../domain/ellipse";
-import { labelWords } from "../domain/label";
+import { type LabelWords, labelWords } from "../domain/label";
 import { covarianceAt } from "../domain/staleness";
 import { isNarrow } from "../domain/view";
-import { labelPlaces, nearest, type Spot, type Wanted } from "./label-places";
+import { nearest } from "./boxes";
+import { labelPlaces, type Spot, type Text, type Wanted } from "./label-places";
 import type { Box, Layer, Placed, Scene } from "./layer";
 import { markReach, movers, RADIUS, rankOf } from "./place";
 import { radioBoxes } from "./radio-names";
@@ -41,10 +42,9 @@ export const labels: Layer = {
     context.font = fontOf(scene);
     context.textAlign = "left";
     context.textBaseline = "top";
-    for (const { place, spot } of drawn) if (spot.kind === "led") lead(context, scene, place, spot.box);
-    for (const { place, spot, whole, short } of drawn) {
-      write(context, scene, place, spot.kind === "whole" ? whole : [short], spot.box);
-    }
+    for (const { place, spot } of drawn) if (spot.led) lead(context, scene, place, spot.box);
+    for (const { place, spot, words } of drawn)
+      write(context, scene, place, linesOf(words, spot.text), spot.box);
     context.restore();
   },
 };
@@ -94,29 +94,36 @@ function fontOf(scene: Scene): string {
 
 interface Label {
   readonly place: Placed;
-  readonly whole: readonly string[];
-  readonly short: string;
+  readonly words: LabelWords;
   readonly wanted: Wanted;
+}
+
+function linesOf(words: LabelWords, text: Text): readonly string[] {
+  return text === "whole" ? words.whole : [words[text]];
 }
 
 function labelOf(context: CanvasRenderingContext2D, scene: Scene, place: Placed): Label {
   const labelled = { ...scene, narrow: isNarrow(scene.view) };
-  const { whole, short } = labelWords(place.node, labelled, errorNotSeen(scene, place));
-  const size = (lines: readonly string[]) => ({
-    width: Math.max(...lines.map((line) => widthOf(context, line))) + 2 * PADDING,
-    height: lines.length * LINE_PX * scene.view.text + PADDING,
-  });
+  const words = labelWords(place.node, labelled, errorNotSeen(scene, place));
+  const size = (text: Text) => {
+    const lines = linesOf(words, text);
+    return {
+      width: Math.max(...lines.map((line) => widthOf(context, line))) + 2 * PADDING,
+      height: lines.length * LINE_PX * scene.view.text + PADDING,
+    };
+  };
   const wanted = {
     node: place.node.node,
     x: place.x,
     y: place.y,
     away: markReach(scene, place.node) + BESIDE_PX,
-    whole: size(whole),
-    short: size([short]),
+    whole: size("whole"),
+    short: size("short"),
+    brief: size("brief"),
     always: urgent(scene, place),
     rank: rankOf(scene, place.node),
   };
-  return { place, whole, short, wanted };
+  return { place, words, wanted };
 }
 
 /** How far off somebody may be (m), where the map is too small to show it. */

@@ -1,6 +1,6 @@
 /** What stands: base, anchors, beacons, breadcrumbs, each in its own shape. */
 import { statusAt } from "../domain/staleness";
-import { overlap } from "./label-places";
+import { overlap } from "./boxes";
 import { labelBoxes } from "./labels";
 import type { Layer, Placed, Scene } from "./layer";
 import { radios as standing } from "./place";
