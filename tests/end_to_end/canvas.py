@@ -12,6 +12,11 @@ FIRST_CREW = "#56b4e9"
 SECOND_CREW = "#e69f00"
 THIRD_CREW = "#009e73"
 UAV = "#aab2ba"
+# So are, by day, the lines of the first two: ellipses, trails, the edge of who is lost.
+FIRST_LINE = "#448eb8"
+SECOND_LINE = "#b37c00"
+# The newest part of a trail lets the ground through.
+FIRST_TRAIL = "#80b1cd"
 
 _PIXELS = """(canvas, {colour, tolerance}) => {
   const wanted = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));

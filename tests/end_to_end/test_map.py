@@ -4,7 +4,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from tests.end_to_end.canvas import FIRST_CREW, SECOND_CREW, THIRD_CREW, UAV
+from tests.end_to_end.canvas import FIRST_CREW, FIRST_LINE, SECOND_CREW, SECOND_LINE, THIRD_CREW, UAV
 from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import LEVELS, Reading, alarm, base, heard, responder, step
 from tests.running import Post, Server, eventually
@@ -71,7 +71,7 @@ def test_the_ellipse_around_a_fix_has_its_95_percent_size_and_grows_while_nothin
     mark = commander.settled_mark(FIRST_CREW)
     west, east = commander.settled_mark(SECOND_CREW), commander.settled_mark(THIRD_CREW)
     pixels_per_metre = (east.x - west.x) / 12
-    border = commander.colour(FIRST_CREW, tolerance=24)
+    border = commander.colour(FIRST_LINE, tolerance=24)
     assert border.height > mark.height + 20
     assert border.height / pixels_per_metre == pytest.approx(2 * 2.448, abs=0.4)
 
@@ -79,7 +79,7 @@ def test_the_ellipse_around_a_fix_has_its_95_percent_size_and_grows_while_nothin
     eventually(lambda: commander.board()["QUIET"].age_s == 4)
     grown = eventually(
         lambda: (
-            (seen := commander.colour(FIRST_CREW, tolerance=24)).height > border.height * 1.5 and seen.height
+            (seen := commander.colour(FIRST_LINE, tolerance=24)).height > border.height * 1.5 and seen.height
         )
     )
     # 0.5 m/s for 4 s beside the 1 m of the fix.
@@ -99,7 +99,7 @@ def test_the_map_shows_everybody_who_comes_with_the_ellipse_until_the_commander_
     # Far outside of what is seen, and perhaps another 25 m to the north.
     heard(post, incident, responder(T0 + 1, "unsure", "B", [0, 65, 0], sigma_m=10.0))
     near, unsure = commander.settled_mark(FIRST_CREW), commander.settled_mark(SECOND_CREW)
-    ellipse = commander.colour(SECOND_CREW, tolerance=24)
+    ellipse = commander.colour(SECOND_LINE, tolerance=24)
     assert ellipse.height / (near.y - unsure.y) == pytest.approx(2 * 2.448 * 10 / 60, rel=0.15)
     assert ellipse.height == pytest.approx(ellipse.width, rel=0.05)
 
@@ -189,7 +189,7 @@ def test_the_ellipse_of_a_sure_fix_shows_around_its_mark(
     sure = responder(T0, "sure", "A", [0, 4, 0], sigma_m=0.01)
     between_two_who_stand(server, post, commander, sure, apart_m=80.0)
     mark = commander.settled_mark(FIRST_CREW)
-    assert commander.colour(FIRST_CREW, tolerance=24).height > mark.height + 8
+    assert commander.colour(FIRST_LINE, tolerance=24).height > mark.height + 8
 
 
 def test_the_first_picture_comes_soon_without_webgl_and_from_this_server_alone(

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from tests.end_to_end.canvas import FIRST_CREW, SECOND_CREW, Pixels
+from tests.end_to_end.canvas import FIRST_CREW, FIRST_TRAIL, SECOND_CREW, Pixels
 from tests.end_to_end.commander import BoardRow, Commander
 from tests.end_to_end.scene import alarm, base, dropped, heard, recorded, responder, step
 from tests.running import Post, Server, eventually
@@ -215,6 +215,6 @@ def test_long_before_the_end_of_an_incident_the_trail_leads_to_where_somebody_wa
     commander.follows_link(server.url, incident, t=T0 + 40)
     eventually(lambda: commander.mode == "REPLAY" and commander.board()["WALKER"].age_s == 0)
     mark = commander.settled_mark(FIRST_CREW)
-    eventually(lambda: commander.colour(FIRST_CREW, tolerance=60).left < mark.left - 5 * mark.width)
+    eventually(lambda: commander.colour(FIRST_TRAIL, tolerance=20).left < mark.left - 5 * mark.width)
     commander.turns_trails_off()
-    eventually(lambda: commander.colour(FIRST_CREW, tolerance=60).left > mark.left - 3 * mark.width)
+    eventually(lambda: commander.colour(FIRST_TRAIL, tolerance=20).left > mark.left - 3 * mark.width)

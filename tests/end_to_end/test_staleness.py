@@ -2,7 +2,7 @@
 
 import time
 
-from tests.end_to_end.canvas import FIRST_CREW
+from tests.end_to_end.canvas import FIRST_CREW, FIRST_LINE
 from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import base, heard, responder, step
 from tests.running import Post, Server, eventually
@@ -28,7 +28,7 @@ def test_a_responder_who_falls_silent_turns_stale_then_lost_in_word_and_shape(
     eventually(lambda: commander.shape(FIRST_CREW) == "diamond")
 
     commander.sees("QUIET", "Lost")
-    eventually(lambda: commander.shape(FIRST_CREW) == "square")
+    eventually(lambda: commander.shape(FIRST_LINE) == "square")
     noted = commander.noted("QUIET")
     assert list(noted) == ["Live", "Stale", "Lost"]
     assert noted["Stale"] in {"6 s", "7 s"}

@@ -1,21 +1,9 @@
 import { expect, test } from "vitest";
+import { contrast } from "./contrast";
 import { crewMarks, markOf } from "./crews";
 import { aNode } from "./samples";
 
 const crews = (...names: string[]) => crewMarks(names.map((crew) => aNode({ crew })));
-
-/** Contrast of two colours by WCAG 2.2. */
-function contrast(a: string, b: string): number {
-  const luminance = (colour: string) => {
-    const [r = 0, g = 0, blue = 0] = [1, 3, 5].map((at) => {
-      const value = Number.parseInt(colour.slice(at, at + 2), 16) / 255;
-      return value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
-    });
-    return 0.2126 * r + 0.7152 * g + 0.0722 * blue;
-  };
-  const [low = 0, high = 0] = [luminance(a), luminance(b)].sort((x, y) => x - y);
-  return (high + 0.05) / (low + 0.05);
-}
 
 test("crews get the same marks in whatever order they come, so that all screens agree", () => {
   expect([...crews("E7", "E5", "T1")]).toEqual([...crews("T1", "E5", "E7")]);

@@ -7,20 +7,26 @@ export interface CrewMark {
   readonly colour: string;
   /** Colour of letters on `colour`, at least 4.5 : 1. */
   readonly ink: string;
+  /** The same hue as a thin line, at least 3 : 1 against what lies under it by day, and by dusk and night. */
+  readonly line: { readonly light: string; readonly dark: string };
 }
 
 const DARK = "#101418";
 /** Okabe and Ito (2008) without vermillion, which is too near to the red of alarms, and black. */
-const COLOURS: readonly { colour: string; ink: string }[] = [
-  { colour: "#56b4e9", ink: DARK },
-  { colour: "#e69f00", ink: DARK },
-  { colour: "#009e73", ink: DARK },
-  { colour: "#f0e442", ink: DARK },
-  { colour: "#cc79a7", ink: DARK },
-  { colour: "#0072b2", ink: "#ffffff" },
+const COLOURS: readonly Omit<CrewMark, "letters">[] = [
+  { colour: "#56b4e9", ink: DARK, line: { light: "#448eb8", dark: "#56b4e9" } },
+  { colour: "#e69f00", ink: DARK, line: { light: "#b37c00", dark: "#e69f00" } },
+  { colour: "#009e73", ink: DARK, line: { light: "#009970", dark: "#05a076" } },
+  { colour: "#f0e442", ink: DARK, line: { light: "#908928", dark: "#f0e442" } },
+  { colour: "#cc79a7", ink: DARK, line: { light: "#ba6e98", dark: "#cc79a7" } },
+  { colour: "#0072b2", ink: "#ffffff", line: { light: "#0072b2", dark: "#3d94c4" } },
 ];
-const NO_CREW: Omit<CrewMark, "letters"> = { colour: "#aab2ba", ink: DARK };
-const UAV: CrewMark = { letters: "UAV", colour: "#aab2ba", ink: DARK };
+const NO_CREW: Omit<CrewMark, "letters"> = {
+  colour: "#aab2ba",
+  ink: DARK,
+  line: { light: "#81878d", dark: "#aab2ba" },
+};
+const UAV: CrewMark = { ...NO_CREW, letters: "UAV" };
 
 /** Letters and digits that a mark has room for. */
 const ROOM = 3;
@@ -50,11 +56,7 @@ export function crewMarks(nodes: Iterable<FrameNode>): Map<string, CrewMark> {
   const marks = new Map<string, CrewMark>();
   for (const crew of [...names].sort((a, b) => a.localeCompare(b))) {
     const colours = COLOURS[marks.size % COLOURS.length] ?? NO_CREW;
-    marks.set(crew, {
-      letters: crewLetters(crew),
-      colour: colours.colour,
-      ink: colours.ink,
-    });
+    marks.set(crew, { ...colours, letters: crewLetters(crew) });
   }
   return marks;
 }

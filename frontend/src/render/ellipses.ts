@@ -68,7 +68,7 @@ function drawn(scene: Scene, place: Placed): Drawn | null {
   const strength = Math.min(1, Math.max(FAINTEST, WHOLE_FILL_PX ** 2 / (majorPx * minorPx)));
   return {
     place,
-    colour: alarm ? scene.palette.alarm : markOf(node, scene.crews).colour,
+    colour: alarm ? scene.palette.alarm : markOf(node, scene.crews).line[scene.palette.shade],
     majorPx,
     minorPx,
     angle_rad,

@@ -20,6 +20,7 @@ export const responders: Layer = {
 function draw(context: CanvasRenderingContext2D, scene: Scene, { node, x, y, elsewhere }: Placed): void {
   const status = statusAt(node, scene.now, scene.limits);
   const mark = markOf(node, scene.crews);
+  const line = mark.line[scene.palette.shade];
   const alarm = scene.alarms.has(node.node);
   context.globalAlpha = elsewhere ? 0.3 : status === "retired" && !alarm ? 0.4 : 1;
   if (node.node === scene.selected) {
@@ -34,7 +35,7 @@ function draw(context: CanvasRenderingContext2D, scene: Scene, { node, x, y, els
     context.fill();
   }
   if (node.heading_rad != null && status === "live" && node.role !== "uav") {
-    context.strokeStyle = mark.colour;
+    context.strokeStyle = line;
     context.lineWidth = 4;
     context.beginPath();
     const [east, north] = [Math.cos(node.heading_rad), Math.sin(node.heading_rad)];
@@ -47,7 +48,7 @@ function draw(context: CanvasRenderingContext2D, scene: Scene, { node, x, y, els
   outline(context, shape, x, y);
   context.fillStyle = gone ? scene.palette.ground : mark.colour;
   context.fill();
-  context.strokeStyle = gone ? mark.colour : scene.palette.ground;
+  context.strokeStyle = gone ? line : scene.palette.ground;
   context.lineWidth = gone ? 3 : 1.5;
   context.setLineDash(gone ? [5, 3] : []);
   context.stroke();

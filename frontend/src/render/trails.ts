@@ -64,7 +64,7 @@ export const trails: Layer = {
 
 export function walkedOf(scene: Scene): Walked {
   const people = movers(scene).flatMap(({ node, elsewhere }) =>
-    elsewhere ? [] : [node.node + markOf(node, scene.crews).colour],
+    elsewhere ? [] : [node.node + markOf(node, scene.crews).line[scene.palette.shade]],
   );
   const shown = [scene.trail_s, scene.trails.version, scene.selected, ...people].join(" ");
   return { view: scene.view, now: scene.now, incident: scene.picture?.incident, trails: scene.trails, shown };
@@ -106,7 +106,7 @@ function stroke(context: CanvasRenderingContext2D, scene: Scene, since: number |
     // An aircraft circles outside: its trail would only cover the others'.
     if (trail === undefined || elsewhere || node.role === "uav") continue;
     const selected = node.node === scene.selected;
-    context.strokeStyle = markOf(node, scene.crews).colour;
+    context.strokeStyle = markOf(node, scene.crews).line[scene.palette.shade];
     context.lineWidth = selected ? 4 : 2.5;
     for (const { begin, end, part } of since === null ? partsOf(trail, scene) : lastOf(trail, scene, since)) {
       context.globalAlpha = (selected ? 0.35 : 0.15) + (0.5 * part) / (PARTS - 1);

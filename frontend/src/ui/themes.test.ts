@@ -1,19 +1,8 @@
 import { describe, expect, test } from "vitest";
+import { contrast, luminance } from "../domain/contrast";
+import { crewMarks, markOf } from "../domain/crews";
+import { aNode } from "../domain/samples";
 import { PALETTES, THEMES } from "./themes";
-
-/** Relative luminance of "#rrggbb" (WCAG 2.2). */
-function luminance(colour: string): number {
-  const [r = 0, g = 0, b = 0] = [1, 3, 5].map((at) => {
-    const value = Number.parseInt(colour.slice(at, at + 2), 16) / 255;
-    return value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
-  });
-  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-}
-
-function contrast(a: string, b: string): number {
-  const [dark = 0, light = 0] = [luminance(a), luminance(b)].sort((x, y) => x - y);
-  return (light + 0.05) / (dark + 0.05);
-}
 
 describe.each(THEMES)("by %s", (theme) => {
   const palette = PALETTES[theme];
@@ -26,6 +15,14 @@ describe.each(THEMES)("by %s", (theme) => {
     ["raised", "warn"],
   ] as const)("what is written on %s in %s can be read", (ground, ink) => {
     expect(contrast(palette[ground], palette[ink])).toBeGreaterThanOrEqual(4.5);
+  });
+
+  test("the ellipse, the trail and the lost mark of every crew, and of who has none, are told from what they lie on", () => {
+    const people = ["1", "2", "3", "4", "5", "6", null].map((crew) => aNode({ crew }));
+    const marks = people.map((node) => markOf(node, crewMarks(people)));
+    for (const ground of [palette.ground, palette.panel, palette.raised]) {
+      for (const { line } of marks) expect(contrast(ground, line[palette.shade])).toBeGreaterThanOrEqual(3);
+    }
   });
 });
 

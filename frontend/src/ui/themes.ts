@@ -4,6 +4,8 @@ export type Theme = "day" | "dusk" | "night";
 export const THEMES: readonly Theme[] = ["day", "dusk", "night"];
 
 export interface Palette {
+  /** Whether its grounds are light or dark: thin lines in a crew's colour differ. */
+  readonly shade: "light" | "dark";
   /** Ground of the map. */
   readonly ground: string;
   readonly panel: string;
@@ -29,6 +31,7 @@ export interface Palette {
 
 export const PALETTES: Record<Theme, Palette> = {
   day: {
+    shade: "light",
     ground: "#eef1f4",
     panel: "#ffffff",
     raised: "#e6ebef",
@@ -47,6 +50,7 @@ export const PALETTES: Record<Theme, Palette> = {
     radio: "#4a5a68",
   },
   dusk: {
+    shade: "dark",
     ground: "#202933",
     panel: "#29343f",
     raised: "#364350",
@@ -65,6 +69,7 @@ export const PALETTES: Record<Theme, Palette> = {
     radio: "#a9b8c4",
   },
   night: {
+    shade: "dark",
     ground: "#090d11",
     panel: "#10161c",
     raised: "#1b242d",
