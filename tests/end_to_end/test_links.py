@@ -37,6 +37,17 @@ def test_a_link_opens_its_incident_storey_and_responder_though_there_is_a_newer_
     assert commander.storey == "First"
 
 
+def test_a_link_to_one_of_many_brings_the_line_and_the_card_into_view(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident()
+    heard(post, incident, base(T0), *(responder(T0, f"ff{at}", "A", [at, 2, 0]) for at in range(10, 40)))
+    commander.sits_at_a_tablet()
+    commander.follows_link(server.url, incident, node="ff30")
+    eventually(lambda: "FF30" in commander.card)
+    eventually(lambda: commander.is_on_the_board("ff30"))
+
+
 def test_a_link_to_a_moment_opens_the_replay_there(server: Server, post: Post, commander: Commander) -> None:
     older = two_incidents(post)
     commander.follows_link(server.url, older)

@@ -61,6 +61,19 @@ def test_however_long_the_name_of_an_incident_is_when_it_was_begun_is_read(
     assert commander.top_bar_height < 60
 
 
+def test_however_short_the_name_of_an_incident_is_when_it_was_begun_is_read_on_a_wide_screen(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = post.open_incident("Fire")
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
+    recorded(post, incident, T0)
+    assert post.http.patch(f"/incidents/{incident}", json={"state": "closed"}).status_code == 200
+    commander.sits_at(1920, 1080)
+    commander.opens(server.url, incident)
+    eventually(lambda: "Nov 21, 2025, " in commander.incident_begun)
+    assert not commander.name_and_begin_overlap
+
+
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768), (768, 1024)])
 def test_what_a_mayday_says_leaves_the_map_its_room(
     server: Server, post: Post, commander: Commander, width: int, height: int
