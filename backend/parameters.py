@@ -1,4 +1,6 @@
-"""Parameters that a route does not know: who misspells one would get an answer to another question."""
+"""Parameters that a route does not know, or takes once: who asked so would hear of something else."""
+
+from typing import Any, get_args, get_origin
 
 from fastapi.exceptions import RequestValidationError, WebSocketRequestValidationError
 from starlette.requests import HTTPConnection
@@ -7,7 +9,7 @@ from backend.authentication import SOCKET_TOKEN
 
 
 async def known_parameters(asked: HTTPConnection) -> None:
-    """Refuse a request or a socket whose query names what its route does not take: a dependency of routes.
+    """Refuse a request or a socket whose query names what its route does not take, or takes once: for routes.
 
     Raises:
         RequestValidationError: a request does.
@@ -15,10 +17,12 @@ async def known_parameters(asked: HTTPConnection) -> None:
     """
     if not asked.query_params:
         return
-    known = {field.alias for field in asked.scope["route"].dependant.query_params}
+    several = {
+        field.alias: _is_list(field.field_info.annotation)
+        for field in asked.scope["route"].dependant.query_params
+    }
     socket = asked.scope["type"] == "websocket"
-    if socket:
-        known.add(SOCKET_TOKEN)
+    known = several.keys() | ({SOCKET_TOKEN} if socket else set())
     takes = ", ".join(f"`{name}`" for name in sorted(known)) or "none"
     faults = [
         {
@@ -29,5 +33,18 @@ async def known_parameters(asked: HTTPConnection) -> None:
         for name in asked.query_params
         if name not in known
     ]
+    faults += [
+        {
+            "type": "repeated_parameter",
+            "loc": ("query", name),
+            "msg": "it is given more than once, and one is taken: ask for each by itself",
+        }
+        for name in asked.query_params
+        if name in known and not several.get(name) and len(asked.query_params.getlist(name)) > 1
+    ]
     if faults:
         raise (WebSocketRequestValidationError if socket else RequestValidationError)(faults)
+
+
+def _is_list(kind: Any) -> bool:
+    return any(get_origin(one) is list for one in (kind, *get_args(kind)))

@@ -1,4 +1,4 @@
-"""Parameters that a route does not know, on a real server."""
+"""Parameters that a route does not know, or not twice, on a real server."""
 
 import pytest
 
@@ -24,6 +24,23 @@ def test_a_question_with_an_unknown_parameter_is_refused_and_told_which_there_ar
     assert takes in fault["message"]
 
 
+@pytest.mark.parametrize(
+    "path", ["evidence?node=ff1&node=ff2", "frame?t=5&t=6", "tracks?role=uav&node=a&node=b"]
+)
+def test_a_question_that_names_one_thing_twice_is_refused_rather_than_answered_for_the_last(
+    post: Post, path: str
+) -> None:
+    answer = post.http.get(f"/incidents/{post.open_incident()}/{path}")
+    assert answer.status_code == 422
+    (fault,) = answer.json()["errors"]
+    assert fault["code"] == "repeated_parameter"
+    assert fault["field"] in {"query.node", "query.t"}
+
+
+def test_what_is_a_list_may_be_named_as_often_as_it_has_entries(post: Post) -> None:
+    assert post.http.get(f"/incidents/{post.open_incident()}/tracks?role=uav&role=base").status_code == 200
+
+
 def test_what_takes_no_parameters_says_so(post: Post) -> None:
     answer = post.http.get(f"/incidents/{post.open_incident()}", params={"t": 5})
     assert (answer.status_code, "takes none" in answer.json()["detail"]) == (422, True)
@@ -32,6 +49,7 @@ def test_what_takes_no_parameters_says_so(post: Post) -> None:
 def test_a_socket_with_an_unknown_parameter_is_not_opened(server: Server, post: Post) -> None:
     incident = post.open_incident()
     assert_refused(server, f"/incidents/{incident}/replay?start=5", 422, "`from`")
+    assert_refused(server, f"/incidents/{incident}/replay?from=5&from=6", 422, "more than once")
 
 
 def test_health_is_told_whatever_a_probe_adds(post: Post, server: Server) -> None:
