@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { type DeepLink, NOTHING } from "../domain/deep-link";
+import { type DeepLink, NOTHING } from "../domain/screen/deep-link";
 import { Address } from "./address";
 
 /** A browser's history, as far as an address goes. */

@@ -1,5 +1,5 @@
 /** The page's address names what is shown; the browser's way back leads through it instead of off the screen. */
-import { type DeepLink, formatDeepLink, isStep, parseDeepLink } from "../domain/deep-link";
+import { type DeepLink, formatDeepLink, isStep, parseDeepLink } from "../domain/screen/deep-link";
 
 /** The parts of a browser's window that this needs. */
 export interface Browser {

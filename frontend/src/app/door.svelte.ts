@@ -1,6 +1,7 @@
 /** The way to an incident: by a link, from the list, to a call for help elsewhere, and back from there. */
-import { type DeepLink, NOTHING } from "../domain/deep-link";
-import type { CallElsewhere } from "../domain/elsewhere";
+
+import type { CallElsewhere } from "../domain/alarms/elsewhere";
+import { type DeepLink, NOTHING } from "../domain/screen/deep-link";
 import type { Incident } from "../domain/types";
 import * as api from "../sources/api";
 

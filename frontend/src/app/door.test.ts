@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, expect, test, vi } from "vitest";
-import { type DeepLink, NOTHING } from "../domain/deep-link";
 import { anIncident } from "../domain/samples";
+import { type DeepLink, NOTHING } from "../domain/screen/deep-link";
 import type { Incident } from "../domain/types";
 import { Door } from "./door.svelte";
 

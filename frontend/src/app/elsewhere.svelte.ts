@@ -5,7 +5,7 @@
  * everybody there, over a link that the incident on the screen needs; so a weak link only makes the looks
  * rarer, and how old they are is said.
  */
-import { type Glimpse, glimpseOf, type Shown, toLookInto } from "../domain/elsewhere";
+import { type Glimpse, glimpseOf, type Shown, toLookInto } from "../domain/alarms/elsewhere";
 import type { Incident } from "../domain/types";
 
 const LOOK_EVERY_MS = 1000;

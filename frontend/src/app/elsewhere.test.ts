@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import type { Shown } from "../domain/elsewhere";
+import type { Shown } from "../domain/alarms/elsewhere";
 import { aFrame, anAlarm, anIncident } from "../domain/samples";
 import type { Incident } from "../domain/types";
 import { Elsewhere } from "./elsewhere.svelte";

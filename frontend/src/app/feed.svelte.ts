@@ -1,6 +1,7 @@
 /** What one source tells: its newest picture, its clock, and the state of the way to it. */
-import { heard, type IncidentClock } from "../domain/clock";
+
 import { type Picture, pictureOf, withDelta } from "../domain/picture";
+import { heard, type IncidentClock } from "../domain/time/clock";
 import type { DeltaMessage, FrameMessage, HeartbeatMessage } from "../domain/types";
 import { type LinkState, NOT_CONNECTED, type Source } from "../sources/source";
 

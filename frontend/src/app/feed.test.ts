@@ -1,6 +1,6 @@
 import { afterEach, expect, test, vi } from "vitest";
-import { incidentTime } from "../domain/clock";
 import { aFrame, aNode, NOON } from "../domain/samples";
+import { incidentTime } from "../domain/time/clock";
 import { type LinkState, type Listener, NOT_CONNECTED, type Source } from "../sources/source";
 import { Feed } from "./feed.svelte";
 

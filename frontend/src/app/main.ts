@@ -1,5 +1,5 @@
 import { mount } from "svelte";
-import { parseDeepLink, takeToken } from "../domain/deep-link";
+import { parseDeepLink, takeToken } from "../domain/screen/deep-link";
 import { signIn } from "../sources/api";
 import "../ui/base.css";
 import App from "./App.svelte";

@@ -1,8 +1,9 @@
 /** The marks on the timeline: what has been seen, and what the record tells of the time before. */
-import { dropsOf, type LoggedAlarm, type LoggedDrop, newBreadcrumbs } from "../domain/logged";
-import { raisedOf } from "../domain/past-alarms";
-import { setMarks } from "../domain/stretches";
-import { type Mark, withAlarmMarks, withDropMarks, withSetMarks } from "../domain/timeline";
+
+import { raisedOf } from "../domain/alarms/past-alarms";
+import { dropsOf, type LoggedAlarm, type LoggedDrop, newBreadcrumbs } from "../domain/time/logged";
+import { setMarks } from "../domain/time/stretches";
+import { type Mark, withAlarmMarks, withDropMarks, withSetMarks } from "../domain/time/timeline";
 import type { DeltaMessage, FrameAlarm, FrameMessage, Incident } from "../domain/types";
 import { loggedPages, newestToldBy } from "../sources/log";
 

@@ -1,5 +1,5 @@
 /** Looking at the past of an incident: from which moment, how fast, and what the record shows of it. */
-import { type Extent, within } from "../domain/timeline";
+import { type Extent, within } from "../domain/time/timeline";
 import type { Incident } from "../domain/types";
 import { ReplaySource } from "../sources/replay-source";
 import { Feed } from "./feed.svelte";

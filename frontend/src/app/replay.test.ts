@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, expect, test, vi } from "vitest";
-import { incidentTime } from "../domain/clock";
 import { aFrame, aNode, anIncident, NOON } from "../domain/samples";
+import { incidentTime } from "../domain/time/clock";
 import type { HeartbeatMessage } from "../domain/types";
 import type { Listener } from "../sources/source";
 import { Replay } from "./replay.svelte";

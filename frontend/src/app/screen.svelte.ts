@@ -1,19 +1,19 @@
 /** What the whole screen knows: the incident, its pictures now and then, and what is chosen. */
 
-import { lowOnAir } from "../domain/air";
-import { alarmByNode, inOrder, type StandingAlarms, standingAlarms } from "../domain/alarms";
-import { incidentTime } from "../domain/clock";
-import { crewMarks } from "../domain/crews";
-import { type DeepLink, NOTHING } from "../domain/deep-link";
-import { blindElsewhere, callsElsewhere } from "../domain/elsewhere";
-import { knownNow } from "../domain/known-now";
-import type { LevelChoice } from "../domain/levels";
-import { presenceOf } from "../domain/presence";
-import { isMoving, limitsOf, MOVING, whileUnheard } from "../domain/staleness";
-import { withStoreysAged } from "../domain/storey-age";
-import { toldAt } from "../domain/stretches";
-import { type Extent, extentOf } from "../domain/timeline";
-import { Trails, trailsOf } from "../domain/trails";
+import { alarmByNode, inOrder, type StandingAlarms, standingAlarms } from "../domain/alarms/alarms";
+import { blindElsewhere, callsElsewhere } from "../domain/alarms/elsewhere";
+import { knownNow } from "../domain/fixes/known-now";
+import type { LevelChoice } from "../domain/fixes/levels";
+import { isMoving, limitsOf, MOVING, whileUnheard } from "../domain/fixes/staleness";
+import { withStoreysAged } from "../domain/fixes/storey-age";
+import { Trails, trailsOf } from "../domain/map/trails";
+import { lowOnAir } from "../domain/people/air";
+import { crewMarks } from "../domain/people/crews";
+import { presenceOf } from "../domain/people/presence";
+import { type DeepLink, NOTHING } from "../domain/screen/deep-link";
+import { incidentTime } from "../domain/time/clock";
+import { toldAt } from "../domain/time/stretches";
+import { type Extent, extentOf } from "../domain/time/timeline";
 import type { DeltaMessage, FrameMessage, Incident, Track } from "../domain/types";
 import { nameOf } from "../domain/words";
 import * as api from "../sources/api";

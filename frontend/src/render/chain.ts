@@ -1,7 +1,7 @@
 /** The chain of breadcrumbs, relay by relay, back to the base. */
-import { type ChainLink, relayChain } from "../domain/chain";
+import { type ChainLink, relayChain } from "../domain/map/chain";
+import { toScreen } from "../domain/map/view";
 import type { Picture } from "../domain/picture";
-import { toScreen } from "../domain/view";
 import type { Layer } from "./layer";
 import { placed } from "./place";
 

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { FIRST_VIEW, fitted, marginsOf, narrowerMargins, resize, toScreen } from "../domain/view";
+import { FIRST_VIEW, fitted, marginsOf, narrowerMargins, resize, toScreen } from "../domain/map/view";
 import { coverage, fittedClear, isAnybodyCovered, isCovered } from "./covered";
 
 const TABLET = resize(FIRST_VIEW, 704, 604);

@@ -1,5 +1,5 @@
 /** Who lies under what covers the map. */
-import type { PlacedNode } from "../domain/around";
+import type { PlacedNode } from "../domain/map/around";
 import {
   type Bounds,
   fitted,
@@ -8,7 +8,7 @@ import {
   marginsOf,
   toScreen,
   type View,
-} from "../domain/view";
+} from "../domain/map/view";
 import type { Box } from "./layer";
 
 /** A map that is fitted anew leaves so much between people and buttons (CSS pixels): who then takes a step towards one

@@ -1,7 +1,8 @@
 /** How sure each fix is: the filled and bordered 95 % ellipse, never a fade, never too small to see. */
-import { markOf } from "../domain/crews";
-import { ellipseOf } from "../domain/ellipse";
-import { covarianceAt, isMoving, statusAt } from "../domain/staleness";
+
+import { covarianceAt, isMoving, statusAt } from "../domain/fixes/staleness";
+import { ellipseOf } from "../domain/map/ellipse";
+import { markOf } from "../domain/people/crews";
 import type { Status } from "../domain/types";
 import type { Layer, Placed, Scene } from "./layer";
 import { markReach, movers, radios } from "./place";

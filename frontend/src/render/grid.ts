@@ -1,5 +1,5 @@
 /** The ground: a grid of local metres. */
-import { toLocal, toScreen } from "../domain/view";
+import { toLocal, toScreen } from "../domain/map/view";
 import type { Layer } from "./layer";
 
 const LEAST_CELL_PX = 34;

@@ -1,7 +1,8 @@
 /** Where everybody was as known now, beside where they were shown then: crosses, thin rings, thin trails. */
-import { ellipseOf } from "../domain/ellipse";
-import { pointAt } from "../domain/known-now";
-import { toScreen } from "../domain/view";
+
+import { pointAt } from "../domain/fixes/known-now";
+import { ellipseOf } from "../domain/map/ellipse";
+import { toScreen } from "../domain/map/view";
 import { levelWords, nameInText, nameOf } from "../domain/words";
 import type { Layer, Scene } from "./layer";
 import { markReach } from "./place";

@@ -1,9 +1,10 @@
 /** Who it is and how old the fix is, of each responder. */
-import { isLowOnAir } from "../domain/air";
-import { borderOnMap, ce95, ellipseOf } from "../domain/ellipse";
-import { type LabelWords, labelWords } from "../domain/label";
-import { covarianceAt } from "../domain/staleness";
-import { isNarrow } from "../domain/view";
+
+import { covarianceAt } from "../domain/fixes/staleness";
+import { borderOnMap, ce95, ellipseOf } from "../domain/map/ellipse";
+import { isNarrow } from "../domain/map/view";
+import { isLowOnAir } from "../domain/people/air";
+import { type LabelWords, labelWords } from "../domain/people/label";
 import { nearest } from "./boxes";
 import { labelPlaces, type Spot, type Text, type Wanted } from "./label-places";
 import type { Box, Layer, Placed, Scene } from "./layer";

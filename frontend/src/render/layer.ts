@@ -1,12 +1,13 @@
 /** What a map layer is: it draws one kind of thing of a scene. A new layer is one new file. */
-import type { CrewMark } from "../domain/crews";
-import type { KnownNow } from "../domain/known-now";
-import type { LevelChoice } from "../domain/levels";
+
+import type { KnownNow } from "../domain/fixes/known-now";
+import type { LevelChoice } from "../domain/fixes/levels";
+import type { StalenessLimits } from "../domain/fixes/staleness";
+import type { Trails } from "../domain/map/trails";
+import type { View } from "../domain/map/view";
+import type { CrewMark } from "../domain/people/crews";
 import type { Picture } from "../domain/picture";
-import type { StalenessLimits } from "../domain/staleness";
-import type { Trails } from "../domain/trails";
 import type { FrameAlarm, FrameNode, Level, Track } from "../domain/types";
-import type { View } from "../domain/view";
 import type { Palette } from "../ui/themes";
 
 /** Everything that the map shows, at one moment. */

@@ -1,5 +1,5 @@
 /** The map: all layers, from the ground up, on one canvas. */
-import type { View } from "../domain/view";
+import type { View } from "../domain/map/view";
 import { chain } from "./chain";
 import { ellipses } from "./ellipses";
 import { grid } from "./grid";

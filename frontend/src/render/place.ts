@@ -1,9 +1,10 @@
 /** Where nodes are drawn, and which one a finger means. */
-import { isLowOnAir } from "../domain/air";
-import { levelOf } from "../domain/levels";
-import { isMoving, statusAt } from "../domain/staleness";
+
+import { levelOf } from "../domain/fixes/levels";
+import { isMoving, statusAt } from "../domain/fixes/staleness";
+import { toScreen } from "../domain/map/view";
+import { isLowOnAir } from "../domain/people/air";
 import type { FrameNode, Status } from "../domain/types";
-import { toScreen } from "../domain/view";
 import type { Placed, Scene } from "./layer";
 
 /** Of a responder's mark (CSS pixels). */

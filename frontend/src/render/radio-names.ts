@@ -1,5 +1,5 @@
 /** The names of what stands, as far as there is room for them: where each is written, and what it takes up. */
-import { statusAt } from "../domain/staleness";
+import { statusAt } from "../domain/fixes/staleness";
 import type { Box, Placed, Scene } from "./layer";
 import { radios } from "./place";
 

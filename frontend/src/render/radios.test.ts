@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
+import { FIRST_VIEW, resize, toLocal } from "../domain/map/view";
 import { aNode, pictureWith } from "../domain/samples";
-import { FIRST_VIEW, resize, toLocal } from "../domain/view";
 import { labels } from "./labels";
 import type { Scene } from "./layer";
 import { radioNames } from "./radio-names";

@@ -1,5 +1,5 @@
 /** What stands: base, anchors, beacons, breadcrumbs, each in its own shape. */
-import { statusAt } from "../domain/staleness";
+import { statusAt } from "../domain/fixes/staleness";
 import { overlap } from "./boxes";
 import { labelBoxes } from "./labels";
 import type { Layer, Placed, Scene } from "./layer";

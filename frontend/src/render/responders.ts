@@ -1,6 +1,7 @@
 /** Responders and UAVs: shape and dash tell live, stale and lost; colour tells the crew; red tells alarm. */
-import { markOf } from "../domain/crews";
-import { statusAt } from "../domain/staleness";
+
+import { statusAt } from "../domain/fixes/staleness";
+import { markOf } from "../domain/people/crews";
 import type { Status } from "../domain/types";
 import type { Layer, Placed, Scene } from "./layer";
 import { ALARM_RADIUS, CHOSEN_RADIUS, movers, RADIUS, STALE_RADIUS } from "./place";

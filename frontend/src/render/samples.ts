@@ -1,8 +1,9 @@
 /** A scene for the tests of this folder: a night with nobody there, with what a test is about put over it. */
+
+import { DEFAULT_LIMITS } from "../domain/fixes/staleness";
+import { Trails } from "../domain/map/trails";
+import { FIRST_VIEW, resize } from "../domain/map/view";
 import { NOON } from "../domain/samples";
-import { DEFAULT_LIMITS } from "../domain/staleness";
-import { Trails } from "../domain/trails";
-import { FIRST_VIEW, resize } from "../domain/view";
 import { PALETTES } from "../ui/themes";
 import type { Scene } from "./layer";
 

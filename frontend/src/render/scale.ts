@@ -1,5 +1,5 @@
 /** How long a metre is, and where north is. */
-import { isNarrow, type View } from "../domain/view";
+import { isNarrow, type View } from "../domain/map/view";
 import type { Box, Layer } from "./layer";
 
 const LONGEST_PX = 160;

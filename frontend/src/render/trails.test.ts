@@ -1,7 +1,7 @@
 import { describe, expect, test } from "vitest";
+import { Trail, Trails } from "../domain/map/trails";
+import { FIRST_VIEW, pan, resize } from "../domain/map/view";
 import { aNode, NOON, pictureWith, STOREYS } from "../domain/samples";
-import { Trail, Trails } from "../domain/trails";
-import { FIRST_VIEW, pan, resize } from "../domain/view";
 import type { Scene } from "./layer";
 import { aScene } from "./samples";
 import { corners, stillHolds, walkedOf } from "./trails";

@@ -1,7 +1,8 @@
 /** Where each responder went, for as long back as was chosen; older parts are fainter. */
-import { markOf } from "../domain/crews";
-import type { Trail, Trails } from "../domain/trails";
-import { toScreen, type View } from "../domain/view";
+
+import type { Trail, Trails } from "../domain/map/trails";
+import { toScreen, type View } from "../domain/map/view";
+import { markOf } from "../domain/people/crews";
 import type { Layer, Scene } from "./layer";
 import { movers } from "./place";
 

@@ -1,5 +1,5 @@
 /** What the log of an incident says of events, read in the background: its newest part first. */
-import { EVENTS, type Logged, loggedIn, newestIn } from "../domain/logged";
+import { EVENTS, type Logged, loggedIn, newestIn } from "../domain/time/logged";
 import type { Incident } from "../domain/types";
 
 /** So many the server looks through at once: about half an hour of two crews, of which few lines come. */

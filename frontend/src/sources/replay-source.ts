@@ -1,4 +1,4 @@
-import { ANSWERED_WITHIN_MS, answers, isOverdue, type Sought } from "../domain/seeking";
+import { ANSWERED_WITHIN_MS, answers, isOverdue, type Sought } from "../domain/time/seeking";
 import { ReconnectingSource, socketAddress, type Told } from "./reconnecting";
 
 export interface ReplayFrom {

@@ -1,6 +1,6 @@
 import { describe, expect, test } from "vitest";
 import { contrast, luminance } from "../domain/contrast";
-import { crewMarks, markOf } from "../domain/crews";
+import { crewMarks, markOf } from "../domain/people/crews";
 import { aNode } from "../domain/samples";
 import { PALETTES, THEMES } from "./themes";
 
