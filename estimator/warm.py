@@ -10,7 +10,7 @@ from estimator.fusion.learned.rival import full, predicted
 from estimator.fusion.memory.ledger import COLUMNS
 from estimator.fusion.motion.constant_velocity import free_motion
 from estimator.fusion.motion.dead_reckoning import walk
-from estimator.fusion.motion.heading_arcs import swung_m2
+from estimator.fusion.motion.heading_arcs import arcs_m2, swung_m2
 from estimator.fusion.motion.recent_places import TrailEnd, offset, turned_m
 from estimator.fusion.motion.silence import gone_m2, unheard_m2, went_on
 from estimator.fusion.readings.crossings import crossings_in
@@ -75,9 +75,10 @@ def warm_up() -> None:
     """Call each compiled function once, with arrays of the kinds that it is called with."""
     _warm_chain()
     _warm_filter()
-    tell_echoes(np.zeros((1, 3)), np.zeros(1), np.ones(1))
     one, place = np.ones(2), np.zeros((2, 3))
     strided = np.full((2, 3), 0.5).T
+    for too_long in (one, strided[1]):
+        tell_echoes(np.zeros((2, 3)), too_long, one)
     for states in ((one, one), (strided[0], strided[1])):
         predict_range(place, place, *states)
     for exponent in (one, strided[1]):
@@ -124,7 +125,9 @@ def _warm_chain() -> None:
     inverses(motion.noise)
     for wide_states in (states, np.zeros((k, 2 * n))[:, :n]):
         reckon(wide_states, between, one, 0)
-    dead_reckon(states, np.zeros((k, 12))[:, :3], np.zeros((k, 12))[:, 3:6], np.ones(k))
+    for m in (1, k):
+        # Of one moment alone the columns of a table lie as those of an array do.
+        dead_reckon(states[:m], np.zeros((m, 12))[:, :3], np.zeros((m, 12))[:, 3:6], np.ones(m))
     add_motion(0, 0, motion.transition, motion.information, motion.residual, diagonal, link, wide)
     eliminate(0, k, diagonal, link, wide)
     take_off(0, k, wide, corner.copy(), rest.copy())
@@ -190,6 +193,7 @@ def _warm_filter() -> None:
     shown(np.zeros(1, dtype=np.intp), graph.reference, inverse(factorise(graph.information)))
     inverted(graph.storage()[0], np.eye(3))
     swung_m2(np.zeros((1, 2, 1)), np.ones(1))
+    arcs_m2(np.zeros((1, 2)), np.ones(1))
     arc_error(np.ones(1))
     turned_m((0.0, 0.0, 0.0))
     unheard_m2(1.0, 0.0)
