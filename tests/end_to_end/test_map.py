@@ -34,18 +34,8 @@ def between_two_who_stand(
 def test_a_responder_moves_on_the_map_as_far_as_it_walks(
     server: Server, post: Post, commander: Commander
 ) -> None:
-    incident = post.open_incident()
-    # Two who stand mark the scale of the map: 12 m from west to east.
-    heard(
-        post,
-        incident,
-        base(T0),
-        responder(T0, "walker", "A", [0, 5, 0]),
-        responder(T0, "west", "B", [-6, -1, 0]),
-        responder(T0, "east", "C", [6, -1, 0]),
-    )
-    commander.opens(server.url, incident)
-    commander.turns_trails_off()
+    walker = responder(T0, "walker", "A", [0, 5, 0])
+    incident = between_two_who_stand(server, post, commander, walker, apart_m=12.0)
     before = commander.settled_mark(FIRST_CREW)
     west, east = commander.settled_mark(SECOND_CREW), commander.settled_mark(THIRD_CREW)
     pixels_per_metre = (east.x - west.x) / 12
