@@ -52,10 +52,12 @@ def world(seed: int) -> World:
             on = _reports(units[who], second)
             if on:
                 e, n = (way[second] - way[second - 1] + chance.normal(0.0, STEP_SIGMA_M, 2)).tolist()
-                readings.append(Displacement(t=second, from_t=second - 1.0, node=who, delta_m=(e, n, 0.0)))
+                readings.append(
+                    Displacement(t=float(second), from_t=second - 1.0, node=who, delta_m=(e, n, 0.0))
+                )
             if on and second % DROPS_S == DROPS_S // 2 + 5 * i:
                 dropped[f"b{who}{second}"] = way[second].copy()
-                readings.append(Drop(t=second, node=f"b{who}{second}", by=who))
+                readings.append(Drop(t=float(second), node=f"b{who}{second}", by=who))
             readings += _heard(chance, second, who, way[second], radios | dropped, REACH_M)
             others = {other: at[second] for other, at in ways.items() if other > who}
             readings += _heard(chance, second, who, way[second], others, HEARD_M)

@@ -58,7 +58,7 @@ def test_an_altimeter_tells_of_a_place_once_it_is_zeroed() -> None:
     tracker = KirchhoffTracker()
     tracker.fold([Node(t=0.0, node="base", role="base"), Node(t=0.0, node="ff1", role="responder")])
     tracker.fold([Displacement(t=float(t), node="ff1", delta_m=(0.5, 0.0, 0.0)) for t in range(1, 21)])
-    tracker.fold([Altitude(t=t, node="ff1", up_m=0.0) for t in (*range(1, 7), NOW)])
+    tracker.fold([Altitude(t=float(t), node="ff1", up_m=0.0) for t in (*range(1, 7), NOW)])
     assert next(estimate for estimate in tracker.estimates() if estimate.node == "ff1").t == NOW
 
 
@@ -72,8 +72,8 @@ def walking(*more: AnyReading) -> FusionState:
     state = FusionState()
     fold_tick(state, 0.5, [Node(t=0.0, node="base", role="base"), Node(t=0.0, node="ff1", role="responder")])
     for second in range(1, 11):
-        step = Displacement(t=second, from_t=second - 1.0, node="ff1", delta_m=(1.0, 0.0, 0.0))
-        fold_tick(state, second, [step])
+        step = Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(1.0, 0.0, 0.0))
+        fold_tick(state, float(second), [step])
     for reading in more:
         fold_tick(state, reading.t, [reading])
     return state

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numba import njit
 from scipy.linalg import block_diag
 from scipy.spatial.transform import Rotation
 
@@ -34,11 +35,16 @@ def unsure(chance: np.random.Generator) -> Strapdown:
     return boot
 
 
+@njit()
+def take_in(boot: Strapdown, sample: Array) -> None:
+    propagate(boot, sample, GRAVITY_MPS2, ERRORS, STEP_S)
+
+
 def carried(boot: Strapdown, force: Array, rate: Array) -> None:
     sample = np.empty(6)
     for one, other in zip(force, rate, strict=True):
         without_biases(boot, one, other, sample)
-        propagate(boot, sample, GRAVITY_MPS2, ERRORS, STEP_S)
+        take_in(boot, sample)
 
 
 def test_the_covariance_of_errors_is_that_of_its_linear_model() -> None:

@@ -75,7 +75,9 @@ def test_bearings(seed: int) -> None:
 def test_displacements(seed: int) -> None:
     chance = np.random.default_rng(seed)
     state = chance.normal(0.0, 1.0, 6) * np.array([10.0, 10.0, 3.0, 2.0, 0.01, 0.05])
-    delta, duration = chance.normal(0.0, 2.0, (1, 3)), chance.uniform(0.0, 5.0, 1)
+    # Columns of a table, as the filter hands them.
+    steps = np.column_stack([chance.normal(0.0, 2.0, (2, 3)), chance.uniform(0.0, 5.0, 2)])
+    delta, duration = steps[:, :3], steps[:, 3]
     numeric = differences(lambda x: move(x[None], delta, duration).state[0], state)
     assert np.abs(move(state[None], delta, duration).transition[0] - numeric).max() < 1e-6
 

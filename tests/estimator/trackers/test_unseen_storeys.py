@@ -47,15 +47,15 @@ def climbs(seed: int) -> tuple[list[AnyReading], Array]:
     ]
     for second in range(1, len(way)):
         e, n = (way[second, :2] - way[second - 1, :2] + chance.normal(0.0, 0.03, 2)).tolist()
-        readings.append(Displacement(t=second, from_t=second - 1.0, node="ff1", delta_m=(e, n, 0.0)))
+        readings.append(Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(e, n, 0.0)))
         for name, at in radios.items():
             off_m = float(np.linalg.norm(way[second] - at))
             if off_m < REACH_M:
                 range_m = abs(off_m + float(chance.normal(0.0, 0.15)))
-                readings.append(Range(t=second, a="ff1", b=name, range_m=range_m, technology="uwb"))
+                readings.append(Range(t=float(second), a="ff1", b=name, range_m=range_m, technology="uwb"))
         if second in DROPS_S:
             radios[f"b{second}"] = way[second]
-            readings.append(Drop(t=second, node=f"b{second}", by="ff1"))
+            readings.append(Drop(t=float(second), node=f"b{second}", by="ff1"))
     return readings, way
 
 
@@ -68,12 +68,12 @@ def stays(seed: int, way: Array) -> list[AnyReading]:
     for second in range(1, len(way)):
         was, now = lap[(second - 1) % (len(lap) - 1)], lap[second % (len(lap) - 1)]
         e, n = (now[:2] - was[:2] + chance.normal(0.0, 0.03, 2)).tolist()
-        readings.append(Displacement(t=second, from_t=second - 1.0, node="ff2", delta_m=(e, n, 0.0)))
+        readings.append(Displacement(t=float(second), from_t=second - 1.0, node="ff2", delta_m=(e, n, 0.0)))
         for name, at in [("base", way[0]), *((f"b{t}", way[t]) for t in DROPS_S if t < second)]:
             off_m = float(np.linalg.norm(now - at))
             if off_m < REACH_M:
                 range_m = abs(off_m + float(chance.normal(0.0, 0.15)))
-                readings.append(Range(t=second, a="ff2", b=name, range_m=range_m, technology="uwb"))
+                readings.append(Range(t=float(second), a="ff2", b=name, range_m=range_m, technology="uwb"))
     return readings
 
 

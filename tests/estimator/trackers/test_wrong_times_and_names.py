@@ -86,7 +86,12 @@ def world(
             step = np.array([[cos, -sin], [sin, cos]]) @ (by_unit[second] - by_unit[second - 1])
             east, north = (step + chance.normal(0.0, 0.03, 2)).tolist()
             told.append(
-                (second, Displacement(t=second, from_t=second - 1, node=name, delta_m=(east, north, 0.0)))
+                (
+                    second,
+                    Displacement(
+                        t=float(second), from_t=float(second - 1), node=name, delta_m=(east, north, 0.0)
+                    ),
+                )
             )
             t = second - before_s
             at = (1.0 - before_s) * by_radio[second] + before_s * by_radio[second - 1]

@@ -180,7 +180,7 @@ def test_a_lost_packet_takes_no_steps_from_those_who_have_lost_none() -> None:
     readings: list[AnyReading] = []
     for second in range(1, 60):
         ahead = (1.0, 0.0, 0.0)
-        readings.append(Displacement(t=second, from_t=second - 1.0, node="ff2", delta_m=ahead))
+        readings.append(Displacement(t=float(second), from_t=second - 1.0, node="ff2", delta_m=ahead))
         readings.append(Range(t=second + 0.1, a="ff1", b="ff2", range_m=5.0, technology="uwb"))
         if second % 2:
             readings.append(Displacement(t=second + 0.2, from_t=second - 0.8, node="ff1", delta_m=ahead))

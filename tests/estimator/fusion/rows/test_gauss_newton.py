@@ -98,16 +98,16 @@ def linearise_plainly(table: Array, columns: Indices, x: Array) -> tuple[Array, 
     used = (columns >= 0).astype(float)
     here = x[np.maximum(columns, 0)] * used
     a, b = here[:, :3] + table[:, A_E : A_E + 3], here[:, 3:6] + table[:, B_E : B_E + 3]
-    first, second = here[:, 6] + table[:, CONSTANT], here[:, 7]
-    jacobian, residual = np.zeros((len(table), 8)), table[:, VALUE] - here[:, 0]
+    first, second, value = here[:, 6] + table[:, CONSTANT], here[:, 7].copy(), table[:, VALUE].copy()
+    jacobian, residual = np.zeros((len(table), 8)), value - here[:, 0]
     jacobian[:, 0] = 1.0
     for kind, got in (
         (RANGE, predict_range(a, b, first, second)),
-        (RSSI, predict_rssi(table[:, VALUE], a, b, first, second)),
+        (RSSI, predict_rssi(value, a, b, first, second)),
         (BEARING, predict_bearing(a, b, first)),
     ):
         mine = table[:, KIND] == kind
-        off = table[:, VALUE] - got.predicted
+        off = value - got.predicted
         residual[mine] = (wrap(off) if kind == BEARING else off)[mine]
         jacobian[mine] = np.concatenate([got.by_a, got.by_b, got.by_extra], axis=1)[mine]
     return jacobian * used, residual

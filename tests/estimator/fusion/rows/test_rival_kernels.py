@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from numba import njit
 
 from estimator.fusion.learned import rival
 from estimator.fusion.memory.ledger import RANGE, RSSI
@@ -82,7 +83,7 @@ def test_a_rival_goes_on_from_where_it_was() -> None:
     after = follow(ranged(UNITS[0], 2), pose_t=POSE_T + 1.0, rivals=before.rivals, links=before.links)
     assert after.rivals[0, T] == 8.5
     assert after.links[:, 1].tolist() == [1.0, 2.0]
-    assert after.rivals[0, ODDS] == rival.odds_of(after.links[:, NUMBER], 8.5)
+    assert after.rivals[0, ODDS] == rival.odds_of(after.links[:, NUMBER].copy(), 8.5)
 
 
 def test_of_whom_is_not_asked_there_is_no_rival_and_yet_he_was_heard() -> None:
@@ -93,17 +94,28 @@ def test_of_whom_is_not_asked_there_is_no_rival_and_yet_he_was_heard() -> None:
     assert not follow(ranged(UNITS[0], -1)).heard
 
 
+@njit()
+def of_a_unit(links: Array, told: Array, gains: Array) -> Array:
+    return told_by_links(links[:, NUMBER], told, gains)
+
+
+def heard_more(known: Array, told: Array, gains: list[float]) -> Array:
+    """What links tell with more readings, of a unit's part of the links of all."""
+    links: Array = of_a_unit(np.column_stack([np.zeros(len(known)), known]), told, np.array(gains))
+    return links
+
+
 def test_a_link_that_is_heard_again_at_once_tells_nothing_more() -> None:
-    once = told_by_links(np.zeros((0, 3)), told((3, 5.0)), np.array([2.0]))
-    twice = told_by_links(once, told((3, 5.0)), np.array([2.0]))
-    later = told_by_links(once, told((3, 5.0 + rival.SPELL_S)), np.array([2.0]))
+    once = heard_more(np.zeros((0, 3)), told((3, 5.0)), [2.0])
+    twice = heard_more(once, told((3, 5.0)), [2.0])
+    later = heard_more(once, told((3, 5.0 + rival.SPELL_S)), [2.0])
     assert once.tolist() == twice.tolist() == [[3.0, 5.0, 2.0]]
     assert later[0, 2] == pytest.approx(2.0 + 2.0 * math.exp(-rival.SPELL_S / rival.MEMORY_S))
 
 
 def test_links_stand_in_order_and_are_forgotten_once_they_have_long_been_silent() -> None:
     known = np.array([[2.0, 0.0, 1.0], [7.0, 15.0, 1.0]])
-    found = told_by_links(known, told((9, 25.0), (1, 25.0)), np.array([20.0, -20.0]))
+    found = heard_more(known, told((9, 25.0), (1, 25.0)), [20.0, -20.0])
     assert found.tolist() == [[1.0, 25.0, rival.LEAST], [7.0, 15.0, 1.0], [9.0, 25.0, rival.MOST]]
 
 

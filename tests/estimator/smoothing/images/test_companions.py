@@ -80,13 +80,15 @@ def readings_of(ways: Ways, radios: Radios, on_s: dict[str, int]) -> list[AnyRea
             if second > on_s.get(who, 10_000):
                 step = turned @ (way[second] - way[second - 1]) + chance.normal(0.0, 0.03, 2)
                 e, n = step.tolist()
-                readings.append(Displacement(t=second, from_t=second - 1.0, node=who, delta_m=(e, n, 0.0)))
+                readings.append(
+                    Displacement(t=float(second), from_t=second - 1.0, node=who, delta_m=(e, n, 0.0))
+                )
             others = {name: at[second] for name, at in ways.items() if name > who}
             for name, at in {**{n: np.array(p) for n, p in radios.items()}, **others}.items():
                 off_m = float(np.hypot(*(way[second] - at)))
                 if name in radios or off_m < HEARD_M:
                     range_m = abs(off_m + float(chance.normal(0.0, 0.1)))
-                    readings.append(Range(t=second, a=who, b=name, range_m=range_m, technology="uwb"))
+                    readings.append(Range(t=float(second), a=who, b=name, range_m=range_m, technology="uwb"))
     return readings
 
 

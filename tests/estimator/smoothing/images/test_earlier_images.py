@@ -29,7 +29,13 @@ def followed(side: float) -> dict[int, NodeEstimate]:
     for second in range(1, TOLD_S + 1):
         north_m = -20.0 + second if second < 20 else side * np.clip(second - LEFT_S, 0.0, 30.0)
         heard: list[AnyReading] = [
-            Range(t=second, a="ff1", b=name, range_m=off_m + float(chance.normal(0.0, 0.1)), technology="uwb")
+            Range(
+                t=float(second),
+                a="ff1",
+                b=name,
+                range_m=off_m + float(chance.normal(0.0, 0.1)),
+                technology="uwb",
+            )
             for name, (e, n) in radios.items()
             if (off_m := float(np.hypot(12.0 - e, north_m - n))) and (name in TWO or second > WAITS_S)
         ]

@@ -34,10 +34,12 @@ def crossing(radios: dict[str, tuple[float, float]], silent_s: range = range(41)
         at = np.array([12.0, float(second - CROSSED_S)])
         if second not in silent_s:
             e, n = (np.array([0.0, 1.0]) + chance.normal(0.0, 0.03, 2)).tolist()
-            readings.append(Displacement(t=second, from_t=second - 1.0, node="ff1", delta_m=(e, n, 0.0)))
+            readings.append(
+                Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(e, n, 0.0))
+            )
         for name, place in radios.items():
             range_m = float(np.hypot(*(at - place)) + chance.normal(0.0, 0.1))
-            readings.append(Range(t=second, a="ff1", b=name, range_m=range_m, technology="uwb"))
+            readings.append(Range(t=float(second), a="ff1", b=name, range_m=range_m, technology="uwb"))
     return readings
 
 
@@ -79,7 +81,7 @@ def test_who_was_between_other_radios_before_and_after_may_have_been_beyond_the_
         within = 20 <= second <= 60
         for name, place in (TWO if within else others).items() if second % 4 == 0 or not within else ():
             range_m = float(np.hypot(*(at - place)) + chance.normal(0.0, 0.1))
-            readings.append(Range(t=second, a="ff1", b=name, range_m=range_m, technology="uwb"))
+            readings.append(Range(t=float(second), a="ff1", b=name, range_m=range_m, technology="uwb"))
     problem, solved = solved_of(readings)
     heard = heard_by(problem, solved, problem.layout.walks[0])
     way_m, loose = places(problem, solved), loose_steps(problem, solved, 0)
@@ -122,10 +124,12 @@ def silent(heard_again_s: int) -> list[AnyReading]:
     readings.append(Node(t=0.0, node="ff1", role="responder", position_m=(0.0, -12.0, 0.0), sigma_m=0.2))
     for second in [*range(1, 11), *range(31, 51)]:
         at = np.array([float(second), -12.0 if second <= 10 else -4.0])
-        readings.append(Displacement(t=second, from_t=second - 1.0, node="ff1", delta_m=(1.0, 0.0, 0.0)))
+        readings.append(
+            Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=(1.0, 0.0, 0.0))
+        )
         for name, place in TWO.items() if second <= 10 or second >= heard_again_s else ():
             range_m = float(np.hypot(*(at - place)))
-            readings.append(Range(t=second, a="ff1", b=name, range_m=range_m, technology="uwb"))
+            readings.append(Range(t=float(second), a="ff1", b=name, range_m=range_m, technology="uwb"))
     return readings
 
 

@@ -33,7 +33,7 @@ def lingering() -> list[AnyReading]:
         north_m = -20.0 + second if second < 20 else 0.0 if second < 80 else second - 80.0
         for name, (e, n) in TWO.items():
             range_m = float(np.hypot(12.0 - e, north_m - n) + chance.normal(0.0, 0.1))
-            readings.append(Range(t=second, a="ff1", b=name, range_m=range_m, technology="uwb"))
+            readings.append(Range(t=float(second), a="ff1", b=name, range_m=range_m, technology="uwb"))
     return readings
 
 
@@ -69,7 +69,7 @@ def test_a_third_radio_tells_the_side() -> None:
     radios = TWO | {"a3": (32.0, 10.0)}
     entered = [r for r in crossing(radios) if not isinstance(r, Range)]
     rests = [
-        Range(t=second, a="ff1", b=name, range_m=float(np.hypot(12.0 - e, 40.0 - n)), technology="uwb")
+        Range(t=float(second), a="ff1", b=name, range_m=float(np.hypot(12.0 - e, 40.0 - n)), technology="uwb")
         for second in range(121, 128)
         for name, (e, n) in radios.items()
     ]

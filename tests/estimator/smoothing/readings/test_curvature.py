@@ -39,7 +39,7 @@ def test_distances_bend_as_their_slopes_change(incident: Problem, seed: int) -> 
     heard_dbm = rows.pairs[kinds == RSSI, 4]
     for kind, predict in ((RANGE, predict_range), (RSSI, partial(predict_rssi, heard_dbm))):
         mine = np.flatnonzero(kinds == kind)
-        one, two = x[size - layout.width + rows.columns[mine, 12:14]].T
+        one, two = x[size - layout.width + rows.columns[mine, 12:14]].T.copy()
         around = [np.eye(3)[c] * step for step in (1e-5, -1e-5) for c in range(3)]
         slopes = [predict(a[mine] + off_m, b[mine], one, two).by_a for off_m in around]
         curved = np.stack([(slopes[c] - slopes[3 + c]) / 2e-5 for c in range(3)], axis=-1)

@@ -37,10 +37,10 @@ def incident() -> list[AnyReading]:
     for second in range(1, SECONDS + 1):
         step = place(second) - place(second - 1) + chance.normal(0.0, 0.01, 2)
         delta_m = (float(step[0]), float(step[1]), 0.0)
-        readings.append(Displacement(t=second, from_t=second - 1.0, node="ff1", delta_m=delta_m))
+        readings.append(Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=delta_m))
         for beacon, at_m in BEACONS.items():
             range_m = LONGER * math.dist(place(second), at_m) + float(chance.normal(0.0, 0.1))
-            readings.append(Range(t=second, a="ff1", b=beacon, range_m=range_m, technology="uwb"))
+            readings.append(Range(t=float(second), a="ff1", b=beacon, range_m=range_m, technology="uwb"))
     return readings
 
 
