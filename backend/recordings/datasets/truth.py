@@ -1,15 +1,17 @@
 """The true positions of the data sets, for evaluation only: nothing here ever meets a reading."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from backend.recordings.datasets import footimu_gcp, footimu_vicon
-from backend.recordings.datasets.base import rows, words
+from backend.recordings.datasets.base import Vector3, rows, words
 
 FloatArray = NDArray[np.float64]
+HALF_STANCE_S = 0.3
+"""Of who walks: stance is 60 % of a stride of 1.0 to 1.2 s (Perry, Gait Analysis)."""
 Truth = tuple[FloatArray, FloatArray]
 """Epochs, n (s, as the readings count), and positions, n × 3 (m)."""
 
@@ -72,14 +74,26 @@ def _danis(folder: Path, recording: str) -> dict[str, Truth]:
 
 def _vicon(folder: Path, recording: str) -> dict[str, Truth]:
     table = footimu_vicon.walked(folder, recording or footimu_vicon.RECORDINGS[0])
-    return {"boot": _truth([(row["t_s"], *footimu_vicon.place_of(row)) for row in table])}
+    return {"boot": _bearer(footimu_vicon.footholds(table))}
 
 
 def _gcp(folder: Path, recording: str) -> dict[str, Truth]:
-    """A boot that stands on a tile does not go on; between two it swings in less time than it stands."""
     del recording
     stood = footimu_gcp.tiles(folder)
-    return {"boot": _truth([(t, x, y, 0.0) for since_t, until_t, x, y in stood for t in (since_t, until_t)])}
+    return {"boot": _bearer([(since_t, until_t, (x, y, 0.0)) for since_t, until_t, x, y in stood])}
+
+
+def _bearer(footholds: Sequence[tuple[float, float, Vector3]]) -> Truth:
+    """The way of who wears a boot, of which alone is known where it stood, since when and until when (s).
+
+    He passes over it in the middle of a stance, goes on while it waits for him, and is half a stride ahead of
+    it when it leaves. On whichever he stands for longer, there he is until half a stance before he goes on.
+    """
+    passed = []
+    for since_t, until_t, place in footholds:
+        half_s = min(HALF_STANCE_S, 0.5 * (until_t - since_t))
+        passed += [(t, *place) for t in sorted({since_t + half_s, until_t - half_s})]
+    return _truth(passed)
 
 
 def _truth(table: list[tuple[float, float, float, float]]) -> Truth:
