@@ -48,6 +48,9 @@ SCALE_WALK_PER_ROOT_S = 1e-5
 STRAPDOWN_SCALE_SIGMA = 0.01
 """Of displacements that raw samples make: they are off by what accelerometers are, 1 % (data sheets of
 LSM6DSO, BMI270). ZUPT-aided units err by 0.3 to 1 % of the way in all (Foxlin 2005; Nilsson 2013)."""
+BESIDE_M = 0.1
+"""How far a bearer may be from where his boot stands in the middle of a stance, along each axis: a step is 10
+to 15 cm wide, he leans, and 0.05 s of a walk are 6 cm."""
 SLIP_M = 0.5
 """A stumble, a wheel that spins, a standstill that is missed: half a metre along each horizontal axis."""
 SLIP_RARE = 5.0

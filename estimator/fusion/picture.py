@@ -3,6 +3,7 @@
 from estimator.fusion.holding import flush, names_of
 from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.fusion.motion.dead_reckoning import go_on
+from estimator.fusion.readings.between_footholds import step_on
 from estimator.measurements.altitude import Altitude
 from estimator.measurements.position import Position
 from estimator.measurements.range import Range
@@ -15,6 +16,7 @@ def look(state: FusionState) -> None:
     Args:
         state: a copy, changed in place: what is foreseen here is never held against what is told later.
     """
+    step_on(state)
     until: dict[str, float] = {}
     for reading in state.waiting:
         names = names_of(reading)

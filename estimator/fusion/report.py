@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 
 from estimator.estimate import NodeEstimate, Relative
+from estimator.fusion import physics
 from estimator.fusion.entering.introduce import tuple_of, upper_triangle
 from estimator.fusion.entering.separated_unit import apart_m2, elsewhere_m2
 from estimator.fusion.images import doubt_between_m2
@@ -27,7 +28,8 @@ MOVING_MPS = 0.3
 def covariance_of(state: FusionState) -> Array:
     """Σ of the graph, n × n.
 
-    It holds also that radios may be calibrated otherwise than is assumed, and told places be wrong.
+    It holds also that radios may be calibrated otherwise than is assumed, and told places be wrong; and that
+    a bearer is not where his boot stands.
     """
     graph = state.graph
     found = graph.covariance()
@@ -44,6 +46,10 @@ def covariance_of(state: FusionState) -> Array:
         _widen_by_delay(state, state.nodes[name], suspicion, found)
     for along, moment_m2 in elsewhere:
         found += along @ moment_m2 @ along.T
+    for node in state.nodes.values():
+        if node.raw and node.mode == "unit":
+            rows = state.graph.starts[node.position] + np.arange(2)
+            found[rows, rows] += physics.BESIDE_M**2
     return found
 
 

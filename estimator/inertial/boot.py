@@ -5,6 +5,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from estimator.graph.dense import Array
+from estimator.inertial.footholds import new_footholds
 from estimator.inertial.zero_velocity import BEFORE
 
 GRAVITY_MPS2 = 9.80665
@@ -80,6 +81,7 @@ class Boot(NamedTuple):
             rested at first ((rad/s)²); and how long ago a rest has told it, if that is still to be said
             (s): 8.
         clipped: what is known of the ends of its sensors' ranges, see `saturation.hidden_peak`.
+        footholds: when and where it stood, see `footholds.NOW_S`.
     """
 
     held: Strapdown
@@ -92,6 +94,7 @@ class Boot(NamedTuple):
     unheld: Array
     gyros: Array
     clipped: Array
+    footholds: Array
 
     @classmethod
     def new(cls, heading_rad: float) -> Self:
@@ -107,6 +110,7 @@ class Boot(NamedTuple):
             np.zeros(6),
             np.zeros(8),
             np.zeros(CLIPPED),
+            new_footholds(),
         )
 
     def to_level_again(self) -> Self:

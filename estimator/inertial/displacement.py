@@ -16,6 +16,7 @@ from estimator.inertial.boot import (
     VELOCITY,
     Boot,
 )
+from estimator.inertial.footholds import HIDDEN_M2PS2
 from estimator.inertial.strapdown import ATTITUDE_WALK, FORCE_SIGMA_MPS2, SCALE_SIGMA
 from estimator.inertial.zaru import TOLD_AFTER_S
 from estimator.inertial.zupt import UNHELD_S
@@ -24,6 +25,8 @@ from estimator.measurements.displacement import Displacement
 STRIDE_SIGMA_M_PER_ROOT_M = 0.02
 """Random error of a stride, more than the filter itself believes, which takes each standstill for perfect:
 published errors of ZUPT-aided units are 0.3 to 1 % of ways of some ten strides, heights as much."""
+SWINGS_S = 0.5
+"""So long a velocity that a clipped peak has made wrong leads astray: the next standstill tells it."""
 FELT_OFF_MPS2 = math.hypot(FORCE_SIGMA_MPS2, SCALE_SIGMA * GRAVITY_MPS2)
 """What its accelerometers may be off by, and no motion."""
 
@@ -55,9 +58,11 @@ def displacement_of(boot: Boot, node: str, from_t: float, t: float, unsure_m2: f
         t: now (s).
         unsure_m2: what its place is unsure by that the boot does not know of (m²).
     """
-    held, velocities = boot.held, range(VELOCITY, ATTITUDE)
+    held = boot.held
     east, north, up = held.place.tolist()
-    speed_m2 = max(float(held.covariance[velocities, velocities].max()), 0.0) * (t - from_t) ** 2
+    velocities, span_s = range(VELOCITY, ATTITUDE), t - from_t
+    hidden_m2 = float(boot.footholds[HIDDEN_M2PS2]) * min(span_s, SWINGS_S) ** 2
+    speed_m2 = max(float(held.covariance[velocities, velocities].max()) * span_s**2, hidden_m2)
     way_m2 = STRIDE_SIGMA_M_PER_ROOT_M**2 * float(np.sqrt(np.dot(held.place, held.place)))
     moved_m2, lifted_m2 = boot.comparison[MOVED_M2 : MOVED_M2 + 2].tolist()
     # What it stands on may have moved: then it went so far at least, but for what its sensors feel at rest.

@@ -29,6 +29,7 @@ from estimator.inertial.boot import (
     Boot,
     Strapdown,
 )
+from estimator.inertial.footholds import move_prints
 from estimator.inertial.rotations import azimuth_rad, turned_about
 from estimator.inertial.strapdown import remove_errors, zero_velocity_update
 from estimator.inertial.zero_velocity import ALIKE_S, QUIET
@@ -152,6 +153,7 @@ def _adopt_free(boot: Boot) -> None:
     held, free, comparison = boot.held, boot.free, boot.comparison
     apart = separation_m(boot)
     held.place[:] += apart
+    move_prints(boot.footholds, apart)
     across = max(free.covariance[0, 0], free.covariance[1, 1])
     comparison[MOVED_M2] += across + BELIEVED_OFF**2 * (apart[0] ** 2 + apart[1] ** 2)
     comparison[MOVED_M2 + 1] += free.covariance[2, 2] + BELIEVED_OFF**2 * apart[2] ** 2

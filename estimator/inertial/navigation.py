@@ -1,40 +1,24 @@
 """From samples to displacements, piece by piece, however they are cut."""
 
 import math
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 
 from estimator.graph.dense import Array
-from estimator.inertial.after_gaps import SOUGHT_S, find_standstill, keep_heading, level_backwards
-from estimator.inertial.boot import (
-    BIAS_RADPS,
-    CHANGED,
-    FARTHEST_RAD,
-    FLAT_M2,
-    FOOTHOLD_M,
-    MOVED_M2,
-    RESTED_S,
-    TURNED_RAD2,
-    Boot,
-)
-from estimator.inertial.displacement import InertialDisplacement, displacement_of
+from estimator.inertial.after_gaps import keep_heading
+from estimator.inertial.boot import TURNED_RAD2
+from estimator.inertial.displacement import InertialDisplacement
 from estimator.inertial.dropped_samples import BRIDGED_S, TURNING_S, bridge, long_turn_rad2, short_turn_rad2
-from estimator.inertial.levelling import ALIGN_S
+from estimator.inertial.integration import integrate
 from estimator.inertial.plausibility import plausible_displacement
-from estimator.inertial.sample_rate import Clock, add_epoch
+from estimator.inertial.progress import JITTER_MOST_S, JITTER_S, Navigation
+from estimator.inertial.sample_rate import add_epoch
 from estimator.inertial.samples import Samples
-from estimator.inertial.short_gaps import CROSSED_S, cross, edge_of
-from estimator.inertial.stuck_sensor import drop_stuck_samples, initial_watch
-from estimator.inertial.zaru import TOLD_AFTER_S
-from estimator.inertial.zupt_aided import advance
+from estimator.inertial.short_gaps import CROSSED_S, edge_of
+from estimator.inertial.stuck_sensor import drop_stuck_samples
 from estimator.measurements.imu import RATE_MIN_HZ
 
-DISPLACEMENT_S = 0.5
-"""A displacement is told so often."""
-JITTER_S, JITTER_MOST_S = 0.002, 0.05
-"""By so much epochs are off that a gateway gives, before they have told; and by so much at most, where
-samples follow each other all the same."""
 UNUSUAL = 4.0
 """An epoch that is late by more of the usual jitters is no jitter: samples are missing."""
 CLOCK_GAIN, JITTER_GAIN = 0.2, 0.1
@@ -42,57 +26,9 @@ CLOCK_GAIN, JITTER_GAIN = 0.2, 0.1
 and so much a piece tells of how much they jitter."""
 PACE_SIGMAS = 3.0
 """What comes early by no more sigmas of its clock's pace may follow all the same, where nothing repeats."""
-STEEP_RAD = 0.1  # as much as a heading is unsure by that is told without a sigma
-STEEP = "what its x axis faces can hardly be told when it begins: it points up or down, or the boot moves"
 REPORTED = "samples of this time were reported before"
 READINGS_MOST = 8
 """Of so many readings at once it is known that a part was new."""
-
-
-class Navigation(NamedTuple):
-    """A boot's navigation between two pieces.
-
-    Attributes:
-        t: end of its newest sample, by its own clock (s).
-        told_t: end of what has been told as displacements (s).
-        began_rad: what its x axis was told to face when it began.
-        unsure_m2: variance of its place by what has been bridged since `told_t` (m²).
-        jitter_s2: variance of the epochs that its gateway gives (s²).
-        newest: its newest sample, 6 (m/s², rad/s).
-        watch: what has been seen of it, see `stuck_sensor.watch_channels`.
-        waiting: its newest samples which may turn out to be no readings, k × 6: they are not in `boot`.
-        unplaced: samples since some were missing, m × 6, which wait for a standstill: they are not in `boot`.
-        edge: how it moved before them, if the way over that gap can be told, see `short_gaps.edge_of`.
-        begun: when readings begin of which a part was new, and whose last piece is still to come, n (s).
-        missing: so many before these are missing, and `boot` has not been told yet.
-        stretched_m: by how much its way may be too long or too short in all, for its clock's pace is not
-            known (m).
-        clock: how fast its samples come.
-        boot: its strapdown navigation; its place counts from where it was at `told_t`.
-    """
-
-    t: float
-    told_t: float
-    began_rad: float
-    unsure_m2: float
-    jitter_s2: float
-    newest: Array
-    watch: Array
-    waiting: Array
-    unplaced: Array
-    edge: Array
-    begun: Array
-    missing: int
-    stretched_m: float
-    clock: Clock
-    boot: Boot
-
-    @classmethod
-    def new(cls, t: float, heading_rad: float, rate_hz: float) -> Self:
-        """That of a boot of which nothing is known at `t` but what its x axis faces, and its rate is told."""
-        began = t, t, heading_rad, 0.0, JITTER_S**2, np.zeros(6), initial_watch()
-        empty = np.zeros((0, 6)), np.zeros((0, 6)), np.zeros(0), np.zeros(0)
-        return cls(*began, *empty, 0, 0.0, Clock.new(rate_hz), Boot.new(heading_rad))
 
 
 class Navigated(NamedTuple):
@@ -157,7 +93,7 @@ def _navigate_piece(known: Navigation, piece: Samples) -> Navigated:
         if missing:
             known, more, _ = _skip_gap(known, None, step_s * (missing - known.missing), step_s * missing)
             turned += more
-        led, known, said = _integrate(known, piece.node, some, step_s)
+        led, known, said = integrate(known, piece.node, some, step_s)
         found, texts = found + led, [said, *texts]
     known = known._replace(t=end_t, watch=sifted.watch, waiting=sifted.waiting, missing=sifted.missing)
     return Navigated(known, found, turned, next((text for text in texts if text is not None), None))
@@ -223,77 +159,3 @@ def _skip_gap(
     boot = boot.to_level_again()
     known = known._replace(t=t, told_t=t, unsure_m2=0.0, missing=0, stretched_m=stretched_m, boot=boot)
     return known._replace(unplaced=known.unplaced[:0], edge=known.edge[:0]), long_turn_rad2(gone_s), found
-
-
-def _recover_boot(
-    known: Navigation, node: str, samples: Array, step_s: float
-) -> tuple[list[InertialDisplacement], Navigation, Array] | None:
-    """Level a boot after a gap: backwards from a standstill, or as at first after `SOUGHT_S` without one.
-
-    Returns:
-        The displacement over the gap, if that can be told; where it goes on; all samples after the gap. None:
-            nothing tells yet where it is.
-    """
-    t, samples = known.t - len(known.unplaced) * step_s, np.vstack([known.unplaced, samples])
-    boot, upto = known.boot.copy(), find_standstill(known.boot, samples, step_s)
-    placed = upto > 0 and level_backwards(boot, samples, upto, step_s)
-    if not placed and len(samples) * step_s < SOUGHT_S:
-        return None
-    crossed = placed and len(known.edge)
-    found = [cross(boot, node, known.edge, edge_of(t, boot, samples[0]))] if crossed else []
-    boot = boot if placed else known.boot
-    known = known._replace(t=t, told_t=t, unplaced=samples[:0], edge=known.edge[:0], boot=boot)
-    return found, known, samples
-
-
-def _integrate(
-    known: Navigation, node: str, samples: Array, step_s: float
-) -> tuple[list[InertialDisplacement], Navigation, str | None]:
-    """Navigate samples that follow without a gap: their displacements, the navigation then, and a remark."""
-    found: list[InertialDisplacement] = []
-    if known.boot.to_be_levelled:
-        sought = _recover_boot(known, node, samples, step_s)
-        if sought is None:
-            t = known.t + len(samples) * step_s
-            return [], known._replace(t=t, unplaced=np.vstack([known.unplaced, samples])), None
-        found, known, samples = sought
-    boot, told_t, unsure_m2 = known.boot.copy(), known.told_t, known.unsure_m2
-    stretched_m, pace_sigma = known.stretched_m, known.clock.sigma
-    force, rate = np.ascontiguousarray(samples[:, :3]), np.ascontiguousarray(samples[:, 3:])
-    text, done = None, 0
-    while done < len(force):
-        # Up to where the next displacement is told, by the boot's own clock.
-        upto = min(max(round((told_t + DISPLACEMENT_S - known.t) / step_s), done + 1), len(force))
-        navigates, known_before = boot.levelled, boot.gyros[BIAS_RADPS] > 0.0
-        farthest_rad = float(boot.known[FARTHEST_RAD])
-        done += advance(boot, force[done:upto], rate[done:upto], step_s)
-        boot.known[TURNED_RAD2] += pace_sigma**2 * (float(boot.known[FARTHEST_RAD]) ** 2 - farthest_rad**2)
-        t = known.t + done * step_s
-        if not navigates:
-            if not boot.levelled and t > told_t + DISPLACEMENT_S + JITTER_MOST_S:
-                text = "its samples feel no gravity: the unit is dead, or measures in other units"
-            if boot.levelled and not known_before:
-                # It stood meanwhile, or may have been swung anywhere.
-                found.append(displacement_of(boot, node, min(max(told_t, t - ALIGN_S), t), t, 0.0))
-                if math.sqrt(boot.known[TURNED_RAD2]) > STEEP_RAD:
-                    text = STEEP
-                boot.gyros[CHANGED] = boot.known[TURNED_RAD2] = 0.0
-            told_t = t if boot.levelled else told_t
-        elif t >= told_t + DISPLACEMENT_S - 0.5 * step_s:
-            unsure = unsure_m2, stretched_m, pace_sigma
-            some, stretched_m = plausible_displacement(boot, node, (told_t, t), *unsure)
-            found += some
-            if not some:
-                text = "the boot never stood, or its samples are wrong: it is levelled anew"
-                boot = boot.to_level_again()
-            told_t, unsure_m2 = t, 0.0
-            boot.comparison[:3] -= boot.held.place
-            boot.footing[FOOTHOLD_M] -= boot.held.place[2]
-            boot.held.place[:] = boot.unheld[3:] = 0.0
-            boot.footing[FLAT_M2] = 0.0
-            boot.comparison[MOVED_M2 : MOVED_M2 + 2] = boot.gyros[CHANGED] = boot.known[TURNED_RAD2] = 0.0
-            if boot.gyros[RESTED_S] > TOLD_AFTER_S:
-                boot.gyros[RESTED_S] = 0.0
-    end_t = known.t + len(force) * step_s
-    known = known._replace(t=end_t, told_t=told_t, unsure_m2=unsure_m2, stretched_m=stretched_m, boot=boot)
-    return found, known, text

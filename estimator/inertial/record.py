@@ -2,7 +2,7 @@
 
 from estimator.graph.record import ArrayRecord, pack, unpack
 from estimator.inertial.boot import Boot, Strapdown
-from estimator.inertial.navigation import Navigation
+from estimator.inertial.progress import Navigation
 from estimator.inertial.sample_rate import Clock
 
 _Plain = tuple[float, float, float, float, float, float]

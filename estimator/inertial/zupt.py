@@ -19,16 +19,13 @@ from estimator.inertial.boot import (
     TURNED_RAD2,
     Boot,
 )
+from estimator.inertial.footholds import FOOTHOLD, NOW_S, STRIDE_S, note_standstill
 from estimator.inertial.rotations import azimuth_rad
 from estimator.inertial.strapdown import remove_errors, update_state, zero_velocity_update
 from estimator.inertial.zero_velocity import ALIKE_S, rolling_mps, stance_sigma
 
 UNHELD_S = 1.0
 """What a boot is moved by while it seems to stand is forgotten in so long: its tilt is not known better."""
-STRIDE_S = 0.15
-"""What has not stood for longer has made a stride."""
-FOOTHOLD = 4
-"""So many standstills in a row are a foothold: a tenth of a second."""
 LEVEL_M, LEVEL_SIGMA_M = 0.05, 0.005
 """The lowest step of a stair is 10 cm: what has risen by less stands as high as before (paper C's height
 correction)."""
@@ -54,6 +51,7 @@ def apply_zupt(boot: Boot, ahead: Array, rate: Array, step_s: float) -> float:
     """
     footing = boot.footing
     footing[HELD_S] += step_s
+    boot.footholds[NOW_S] += step_s
     sigma = stance_sigma(boot.stance, footing[HELD_S])
     if not np.isinf(sigma):
         footing[STOOD] = 1.0 if footing[HELD_S] > STRIDE_S else footing[STOOD] + 1.0
@@ -64,6 +62,7 @@ def apply_zupt(boot: Boot, ahead: Array, rate: Array, step_s: float) -> float:
         if footing[STOOD] == FOOTHOLD:
             hold_level(boot)
         note_heading(boot)
+        note_standstill(boot.footholds, boot.held.place)
     _sum_unheld(boot, ahead, step_s)
     return sigma
 

@@ -9,7 +9,18 @@ import numpy as np
 from numba import njit
 
 from estimator.graph.dense import Array
-from estimator.inertial.boot import BLOWN_M2PS4, ERRORS, FORCE, GRAVITY, GRAVITY_MPS2, SINCE_S, Boot
+from estimator.inertial.boot import (
+    ATTITUDE,
+    BLOWN_M2PS4,
+    ERRORS,
+    FORCE,
+    GRAVITY,
+    GRAVITY_MPS2,
+    SINCE_S,
+    VELOCITY,
+    Boot,
+)
+from estimator.inertial.footholds import HIDDEN_M2PS2, NOT_YET, due_s
 from estimator.inertial.free_navigation import hold_or_release, start_free
 from estimator.inertial.levelling import add_levelling_sample
 from estimator.inertial.saturation import doubt, hidden_peak
@@ -17,6 +28,16 @@ from estimator.inertial.strapdown import doubt_force, propagate, without_biases
 from estimator.inertial.zaru import apply_zaru
 from estimator.inertial.zero_velocity import JERKED, add_sample
 from estimator.inertial.zupt import apply_zupt
+
+
+@njit(cache=True, error_model="numpy")
+def note_hidden(boot: Boot) -> None:
+    """Keep what a peak has hidden of the velocity: the next standstill tells that, and not the way till then.
+
+    Each stride hides as much, and the same way.
+    """
+    for c in range(VELOCITY, ATTITUDE):
+        boot.footholds[HIDDEN_M2PS2] = max(boot.footholds[HIDDEN_M2PS2], boot.held.covariance[c, c])
 
 
 @njit(cache=True, error_model="numpy")
@@ -30,7 +51,7 @@ def advance(boot: Boot, force: Array, rate: Array, step_s: float) -> int:
         step_s: time from one sample to the next (s).
 
     Returns:
-        How many samples it has taken: all, or those up to where it was levelled.
+        How many samples it has taken: all, or those up to where it was levelled, or its way is to be cut.
     """
     sample, other, lost = np.empty(6), np.empty(6), np.empty(6)
     for i in range(len(force)):
@@ -49,6 +70,7 @@ def advance(boot: Boot, force: Array, rate: Array, step_s: float) -> int:
         if hidden:
             doubt(boot.held, lost)
             doubt(boot.free, lost)
+            note_hidden(boot)
         doubt_force(boot.free, boot.stance[JERKED], step_s)
         apply_zaru(boot, rate[i], step_s)
         boot.comparison[SINCE_S] += step_s
@@ -56,4 +78,6 @@ def advance(boot: Boot, force: Array, rate: Array, step_s: float) -> int:
         sigma_mps = apply_zupt(boot, ahead, sample[3:], step_s)
         if not np.isinf(sigma_mps):
             hold_or_release(boot, sigma_mps)
+        if due_s(boot.footholds) != NOT_YET:
+            return i + 1
     return len(force)

@@ -6,7 +6,7 @@ from msgspec.structs import replace
 from estimator.estimate import Covariance6, NodeEstimate, Notice, NoticeCode, Relative, Vector3
 from estimator.graph.dense import Array
 from estimator.graph.variable import Variable
-from estimator.inertial.navigation import Navigation
+from estimator.inertial.progress import Navigation
 from estimator.measurements.node import Role
 from estimator.paper_a.network import Network
 from estimator.paper_a.node import GraphNode

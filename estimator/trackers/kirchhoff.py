@@ -21,7 +21,7 @@ from estimator.trackers.base import TrackerSettings
 from estimator.trackers.lag import Lag, LagRecord
 from estimator.trackers.snapshot import read_snapshot
 
-VERSION = 35
+VERSION = 36
 
 
 class _Snapshot(msgspec.Struct, frozen=True, array_like=True):
@@ -103,7 +103,7 @@ class KirchhoffTracker:
 
 
 def _told(state: FusionState) -> tuple[FusionState, Array]:
-    if state.waiting:
+    if state.waiting or state.navigations:
         state = state.copy()
         look(state)
     return state, report.covariance_of(state)

@@ -34,7 +34,7 @@ from estimator.paper_a.state import PaperAState
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.snapshot import read_snapshot
 
-VERSION = 8
+VERSION = 9
 ORDER: dict[type, int] = {
     Node: 0,
     Displacement: 1,

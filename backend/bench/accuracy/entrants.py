@@ -9,7 +9,8 @@ from typing import Literal, NamedTuple
 from backend.bench.accuracy import gtsam_peer, least_squares
 from estimator import trackers
 from estimator.estimate import TrackPoint
-from estimator.inertial.navigation import Navigation, navigate
+from estimator.inertial.navigation import navigate
+from estimator.inertial.progress import Navigation
 from estimator.inertial.samples import pieces
 from estimator.measurements import Imu
 from estimator.simulate import Report

@@ -21,7 +21,7 @@ from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.prior import Prior
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
-from estimator.inertial.navigation import Navigation
+from estimator.inertial.progress import Navigation
 from estimator.inertial.zaru import RESTED_RADPS
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node, Role

@@ -153,19 +153,27 @@ class Step:
         self.noise = sum_of(self.noise, self._as_learned(noise, reading))
         return Increment(pose_t, (e, n, u), noise, turn, too_fast)
 
+    def pace_mps(self) -> Vector3:
+        """How fast the bearer has gone in the last stride, in the unit's frame: east, north, up (m/s)."""
+        return self._went_m(1.0)
+
     def go_on(self, t: float) -> None:
         """Let the bearer go on as he went, up to an epoch `t` (s) that no displacement has covered yet."""
+        along_s, across_m2 = went_on(t - self._pose_t)
+        self.delta_m, self.duration_s = self._went_m(along_s), t - self._pose_t
+        self.noise = across_m2, across_m2, 0.1 * across_m2, 0.0, 0.0, 0.0
+        self._marks.append(mark_after(self._marks[-1], t, self.delta_m))
+        self._pose_t, self.taken = t, True
+
+    def _went_m(self, span_s: float) -> Vector3:
+        """How far he goes in a time at the velocity of the last stride (m)."""
         last_t, *last = self._marks[-1]
         before_t, *before = next(
             (m for m in self._marks[-2::-1] if m[0] <= last_t - STRIDE_S), self._marks[0]
         )
-        along_s, across_m2 = went_on(t - self._pose_t)
-        share = along_s / (last_t - before_t) if last_t > before_t else 0.0
+        share = span_s / (last_t - before_t) if last_t > before_t else 0.0
         e, n, u = (share * (two - one) for one, two in zip(before, last, strict=True))
-        self.delta_m, self.duration_s = (e, n, u), t - self._pose_t
-        self.noise = across_m2, across_m2, 0.1 * across_m2, 0.0, 0.0, 0.0
-        self._marks.append(mark_after(self._marks[-1], t, self.delta_m))
-        self._pose_t, self.taken = t, True
+        return e, n, u
 
     def _as_learned(self, noise: Noise, reading: Displacement) -> Noise:
         """Variances between two solutions of the window: of a worse unit than assumed, as it has shown.

@@ -8,6 +8,7 @@ import numpy as np
 from estimator.estimate import TrackPoint
 from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, tuple_of, upper_triangle
 from estimator.fusion.motion.constant_velocity import free_motion
+from estimator.fusion.physics import BESIDE_M
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.layout import Layout, Walk
 from estimator.smoothing.keyframes.walks import dead_reckon
@@ -140,6 +141,7 @@ def _moving_points(
         covariance[:, range(3), range(3)] += bridged[:, None] * np.array([1.0, 1.0, 0.1])
         doubt_m2 = walk.node.doubt_up_m2 * walk.way.gone(seconds)
         covariance[:, 2, 2] = np.maximum(covariance[:, 2, 2], doubt_m2)
+        covariance[:, range(2), range(2)] += walk.node.raw * BESIDE_M**2
     return [
         TrackPoint(t=t, position_m=tuple_of(p), covariance_m2=upper_triangle(c))
         for t, p, c in zip(seconds.tolist(), places, covariance, strict=True)

@@ -6,7 +6,8 @@ import numpy as np
 
 from estimator.estimate import Notice
 from estimator.inertial.displacement import InertialDisplacement
-from estimator.inertial.navigation import Navigation, navigate
+from estimator.inertial.navigation import navigate
+from estimator.inertial.progress import Navigation
 from estimator.inertial.samples import pieces
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.imu import Imu
@@ -56,7 +57,7 @@ def true_m(gait: Gait, t: float) -> np.ndarray:
 
 
 def track_boot(truth: Gait, felt: Gait, begins: Node) -> tuple[list[Notice], float]:
-    """Fold a boot's samples into the tracker, and assert that the truth is inside each ellipse shown.
+    """Fold a boot's samples into the tracker, and assert that its bearer is inside each ellipse shown.
 
     Returns:
         The notices given, and the largest error of a position shown (m).
@@ -67,7 +68,7 @@ def track_boot(truth: Gait, felt: Gait, begins: Node) -> tuple[list[Notice], flo
         tracker.fold([reading])
         (found,) = tracker.estimates()
         notices += tracker.take_notices()
-        there = true_m(truth, found.t)
+        there = truth.bearer_m(found.t)
         assert outside(found.position_m, found.covariance_m2, there) < INSIDE
         farthest_m = max(farthest_m, float(np.linalg.norm(np.array(found.position_m) - there)))
     return notices, farthest_m

@@ -13,6 +13,8 @@ STEP_S = 0.005
 HALF_S = 0.5 * STEP_S
 """Truth is told twice as finely: samples lie between the epochs at which it is."""
 STANCE_S, SWING_S = 0.6, 0.5
+STILL_M = 1e-9
+"""A boot that moves no farther from one sample to the next stands."""
 STEEPEST_RAD = 0.7
 LIFTED_M = 0.12
 HEEL_RAD, BALL_RAD = -0.15, 0.25
@@ -58,6 +60,20 @@ class Gait(NamedTuple):
     def readings(self, each: int = 200, node: str = "ff1") -> list[Imu]:
         """Its samples, so many a reading."""
         return [self.imu(first, first + each, node) for first in range(0, len(self.t), each)]
+
+    def bearer_m(self, t: float) -> Array:
+        """Where its bearer is, 3 (m): he passes over it in the middle of a stance, and goes on evenly.
+
+        Who stands is over it from half a stance after it has come down, until half a stance before it leaves.
+        """
+        moves = np.linalg.norm(np.diff(self.place_m, axis=0), axis=1) > STILL_M
+        edges = np.flatnonzero(np.diff(np.concatenate([[True], moves, [True]]).astype(int)))
+        passed = []
+        for first, last in edges.reshape(-1, 2).tolist():
+            half = min(round(0.5 * STANCE_S / STEP_S), (last - first) // 2)
+            passed += [first, last] if len(edges) == 2 else sorted({first + half, last - half})
+        places = self.place_m[passed]
+        return np.array([np.interp(t, self.t[passed] + STEP_S, places[:, axis]) for axis in range(3)])
 
     def sampled(self, pace: float) -> "Gait":
         """The same, by a unit whose samples follow each other `pace` times as slowly as it says."""

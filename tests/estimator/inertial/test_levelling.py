@@ -5,7 +5,8 @@ import pytest
 
 from estimator.inertial.boot import GRAVITY_MPS2
 from estimator.inertial.levelling import ANYWHERE_RAD, azimuth_variance_rad2
-from estimator.inertial.navigation import Navigation, navigate
+from estimator.inertial.navigation import navigate
+from estimator.inertial.progress import Navigation
 from estimator.inertial.rotations import level
 from estimator.inertial.samples import pieces
 from estimator.measurements.imu import Imu

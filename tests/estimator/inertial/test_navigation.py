@@ -10,8 +10,10 @@ from msgspec import structs
 from scipy.spatial.transform import Rotation
 
 from estimator.inertial.dropped_samples import BRIDGED_S
+from estimator.inertial.footholds import APART_S, LATEST_S, OVER_S
 from estimator.inertial.levelling import ALIGN_S
-from estimator.inertial.navigation import DISPLACEMENT_S, JITTER_MOST_S, navigate
+from estimator.inertial.navigation import navigate
+from estimator.inertial.progress import JITTER_MOST_S
 from estimator.inertial.record import navigation_of, record_of
 from estimator.inertial.samples import PIECE_S, pieces
 from estimator.inertial.short_gaps import CROSSED_S
@@ -28,7 +30,7 @@ def test_displacements_follow_each_other_and_lead_along_the_way() -> None:
     found, texts = navigated(GAIT.readings())
     assert texts == []
     assert all(after.from_t == before.t for before, after in pairwise(found))
-    assert all(d.from_t is not None and d.t - d.from_t == pytest.approx(DISPLACEMENT_S) for d in found)
+    assert all(d.from_t is not None and d.t - d.from_t < LATEST_S for d in found)
     assert found[0].from_t == pytest.approx(50.0)
     for upto in range(10, len(found), 7):
         assert np.linalg.norm(total_m(found[:upto]) - true_m(GAIT, found[upto - 1].t)) < 0.3
@@ -104,7 +106,7 @@ def test_epochs_of_a_gateway_that_jitter_cost_no_samples(each: int, jitter_s: fl
     found, texts = navigated(late)
     assert texts == []
     assert np.linalg.norm(total_m(found) - GAIT.place_m[-1]) < 0.4
-    assert found[-1].t == pytest.approx(GAIT.t[-1], abs=DISPLACEMENT_S + JITTER_MOST_S)
+    assert found[-1].t == pytest.approx(GAIT.t[-1], abs=APART_S + OVER_S + JITTER_MOST_S)
 
 
 def test_a_clock_that_runs_fast_is_followed() -> None:
@@ -112,7 +114,7 @@ def test_a_clock_that_runs_fast_is_followed() -> None:
     fast = [structs.replace(r, t=50.0 + (r.t - 50.0) * 200.0 / 201.0) for r in GAIT.readings()]
     found, _ = navigated(fast)
     assert np.linalg.norm(total_m(found) - GAIT.place_m[-1]) < 0.02 * 22.0
-    assert found[-1].t == pytest.approx(fast[-1].until_t, abs=DISPLACEMENT_S + JITTER_MOST_S)
+    assert found[-1].t == pytest.approx(fast[-1].until_t, abs=APART_S + OVER_S + JITTER_MOST_S)
 
 
 @pytest.mark.parametrize("lost", [2, 5, 10, 18])
@@ -136,11 +138,12 @@ def test_after_missing_samples_the_boot_is_sought_again_and_may_have_turned(lost
     done = navigate(known, first, 0.0)
     assert done.turned_rad2 > (2.0 * lost * STEP_S) ** 2 or done.turned_rad2 > 1.0
     # What a short gap led over is told with what follows it; of a longer one nothing is.
-    ends_t = (1600 + lost) * STEP_S
+    began_t, ends_t = 1600 * STEP_S, (1600 + lost) * STEP_S
+    after = [d for d in done.displacements if d.t > began_t + 1e-6]
     if lost * STEP_S > CROSSED_S:
-        assert all((d.from_t or 0.0) >= ends_t - 1e-6 for d in done.displacements)
-    moved = total_m(done.displacements) if done.displacements else np.zeros(3)
-    begins_t = min((d.from_t or 0.0 for d in done.displacements), default=ends_t)
+        assert all((d.from_t or 0.0) >= ends_t - 1e-6 for d in after)
+    moved = total_m(after) if after else np.zeros(3)
+    begins_t = min((d.from_t or 0.0 for d in after), default=ends_t)
     assert (
         np.linalg.norm(moved - true_m(gait, max(done.navigation.told_t, ends_t)) + true_m(gait, begins_t))
         < 0.05
@@ -246,7 +249,7 @@ def test_samples_that_lead_nowhere_are_told_and_navigation_goes_on_afterwards() 
         accel_mps2=[(300.0, 0.0, 0.0)] * 200,
         gyro_radps=[(900.0, 0.0, 0.0)] * 200,
     )
-    rests = walked([], start_t=54.0)
+    rests = walked([], start_t=54.0).noisy(np.random.default_rng(2))
     found, texts = navigated([GAIT.imu(0, 600), falls, *rests.readings()])
     assert any("levelled anew" in text for text in texts)
     assert np.isfinite([d.delta_m for d in found]).all()

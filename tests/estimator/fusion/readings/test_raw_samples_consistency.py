@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from estimator.estimate import NodeEstimate
+from estimator.fusion.physics import BESIDE_M
 from estimator.measurements.node import Node
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, outside
 from tests.estimator.inertial.boot_motion import BootMotion, Unit
-from tests.estimator.inertial.gait import STEP_S, Gait, Stride, walked
+from tests.estimator.inertial.gait import Gait, Stride, walked
 
 SEEDS = 20
 SIGMA_M, SIGMA_RAD = 0.05, 0.03
@@ -52,6 +53,7 @@ def on_in_walk(chance: np.random.Generator) -> Gait:
 def followed(gait: Gait, chance: np.random.Generator) -> tuple[list[float], list[float]]:
     """Squared distances from where he is shown to where he is, by what is said of them: across, and up."""
     off_rad, off_m = chance.normal(0.0, SIGMA_RAD), chance.normal(0.0, SIGMA_M, 3)
+    beside_m = np.append(chance.normal(0.0, BESIDE_M, 2), 0.0)
     begins = Node(
         t=0.0,
         node="ff1",
@@ -66,7 +68,7 @@ def followed(gait: Gait, chance: np.random.Generator) -> tuple[list[float], list
     for reading in gait.readings():
         tracker.fold([reading])
         e = shown(tracker)
-        there = np.array([np.interp(e.t, gait.t + STEP_S, gait.place_m[:, axis]) for axis in range(3)])
+        there = gait.bearer_m(e.t) + beside_m
         across.append(outside(e.position_m, e.covariance_m2, there))
         assert e.position_m is not None
         assert e.covariance_m2 is not None
