@@ -149,7 +149,7 @@ def _warm_chain() -> None:
     heard, read, laid = (np.zeros((1, len(COLUMNS[name]))) for name in ("pairs", "singles", "drops"))
     found = window_readings(LedgerRows(heard, read, laid), 0.0, ground, pair, no, slab)
     rows = found.rows
-    readings = Readings(slab, one, one, pair, end, end, slab, one, slab, end, end, end, slab)
+    readings = Readings(slab, one, one, pair, end, end, slab, one, pair, one, end, end, end, slab)
     residuals(readings, x)
     add_reckoning_noise(jacobians(readings, x), place, place, place, place, np.ones(5))
     separations(readings, x)

@@ -101,6 +101,15 @@ ABSOLUTE_SHARED = 0.5
 FIX_MEMORY_S, FIX_MEMORY_M, HEIGHT_MEMORY_S = 60.0, 10.0, 30.0
 """Half of the variance of a fix or a height stays for so long, or for so much of a way: satellites' paths
 around a house while one stands at its door; draught and weather, by which an altimeter is off."""
+RECEIVER_MEMORY_S = 1800.0
+"""All fixes of a receiver are off by about the same for so long: orbits, clocks and the ionosphere change
+within tens of minutes, and what differs from second to second is decimetres."""
+LATE_SIGMA_S = 0.5
+"""How late fixes usually are: receivers take 0.1 to 0.2 s (autopilots assume 110 to 220 ms), links as much,
+and one that comes each second, or is stamped when it comes, is half a second old."""
+MISLED, LATER_SIGMA_S = 0.1, 2.0
+"""How many receivers are off by as much as mistold places, or so late: facades reflect, an origin that a
+phone has told is 5 m off (gps.gov), clocks of gateways are set by hand."""
 HEIGHTS_OFF, HEIGHT_OFF_M = 0.2, 4.0
 """How many altimeters were not zeroed where their bearers set out, and what they are then off by: sensors are
 good to half a hectopascal (data sheet of BMP390), and weather changes pressure by that in half an hour."""

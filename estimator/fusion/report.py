@@ -28,13 +28,18 @@ MOVING_MPS = 0.3
 def covariance_of(state: FusionState) -> Array:
     """Σ of the graph, n × n.
 
-    It holds also that radios may be calibrated otherwise than is assumed, and told places be wrong; and that
-    a bearer is not where his boot stands.
+    It holds also that radios may be calibrated otherwise than is assumed, and told places and fixes be wrong; and
+    that a bearer is not where his boot stands.
     """
     graph = state.graph
     found = graph.covariance()
     places = ((state.nodes[name], mistold.moment_m2) for name, mistold in state.mistold.items())
-    elsewhere = [(_along(state, node, found), moment) for node, moment in places if node.mode == "static"]
+    told = [
+        (graph.starts[node.position], slice(0, 2), moment) for node, moment in places if node.mode == "static"
+    ]
+    for name, receiver in state.receivers.items():
+        told += [(graph.starts[Variable("receiver", name)], *doubt) for doubt in receiver.doubts]
+    elsewhere = [(_along(found, start, own), moment) for start, own, moment in told]
     for name, known in state.calibrations.items():
         row = graph.starts.get(Variable("range", name))
         if row is not None:
@@ -53,10 +58,15 @@ def covariance_of(state: FusionState) -> Array:
     return found
 
 
-def _along(state: FusionState, node: NodeState, covariance: Array) -> Array:
-    """By how much everything goes along with a place p, east and north, n × 2: Σ_xp Σ_pp⁻¹."""
-    start = state.graph.starts[node.position]
-    own = slice(start, start + 2)
+def _along(covariance: Array, start: int, numbers: slice) -> Array:
+    """By how much everything goes along with some numbers p of a block, n × k: Σ_xp Σ_pp⁻¹.
+
+    Args:
+        covariance: Σ, n × n.
+        start: first row of the block.
+        numbers: which of its numbers, k.
+    """
+    own = slice(start + numbers.start, start + numbers.stop)
     return np.asarray(np.linalg.solve(covariance[own, own], covariance[own]).T, dtype=np.float64)
 
 

@@ -127,6 +127,8 @@ def _begin_at_fixes(state: FusionState, readings: Sequence[AnyHeld]) -> list[Any
             node = state.nodes.get(reading.node)
             if node is None or node.mode == "undecided":
                 absolute.fix(state, reading)
-                continue
+                begun = state.nodes.get(reading.node)
+                if begun is None or begun.role != "uav" or not begun.decided:
+                    continue
         others.append(reading)
     return others

@@ -89,6 +89,12 @@ class Kirchhoff:
         """The reference of one block: its estimate, once `solve` and `rebase` have been called."""
         return self._reference[self.rows(variable)]
 
+    def moved(self, row: int, by: float) -> Self:
+        """The same with one number counted from elsewhere: it is more than it was by so much."""
+        twin = self.copy()
+        twin.reference[row] += by
+        return twin
+
     def firsts(self, kind: VariableKind) -> Indices:
         """First row of each block of a kind, in the order of the rows; not to be changed."""
         found = self._firsts.get(kind)

@@ -2,12 +2,13 @@
 
 from typing import Literal, NamedTuple
 
-VariableKind = Literal["position", "velocity", "unit", "range", "rssi", "altimeter"]
+VariableKind = Literal["position", "velocity", "unit", "range", "rssi", "altimeter", "receiver"]
 """position: east, north, up (m); velocity: the same (m/s); unit: heading error ψ (rad), gyro bias β (rad/s)
 and step scale error s − 1 of a PDR unit; range: scale error and bias (m) of a ranging technology; rssi: power
-at 1 m (dBm) and path-loss exponent; altimeter: what one is off by now (m)."""
+at 1 m (dBm) and path-loss exponent; altimeter: what one is off by now (m); receiver: what fixes of one who
+flies are off by, east, north, up (m), and how late they are (s)."""
 
-TECHNOLOGIES = frozenset({"range", "rssi", "altimeter"})
+TECHNOLOGIES = frozenset({"range", "rssi", "altimeter", "receiver"})
 """Kinds of blocks that are no node's place or way, but last."""
 DIMENSION: dict[VariableKind, int] = {
     "position": 3,
@@ -16,6 +17,7 @@ DIMENSION: dict[VariableKind, int] = {
     "range": 2,
     "rssi": 2,
     "altimeter": 1,
+    "receiver": 4,
 }
 
 

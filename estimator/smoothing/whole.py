@@ -21,18 +21,19 @@ from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
 from estimator.smoothing.changes.branch import branch, reunite
 from estimator.smoothing.changes.moved_nodes import MovedNode, moved_nodes
 from estimator.smoothing.changes.relocation import GAIN, USUAL_COST
-from estimator.smoothing.changes.told_places import ask_told_places, believe, free, is_doubted, mistold
+from estimator.smoothing.changes.told_places import believe
 from estimator.smoothing.images.alternatives import Mode
 from estimator.smoothing.images.unit_mounting import likeliest_mounting
 from estimator.smoothing.images.unseen_climbs import find_unseen_climb
 from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.learning.delays import CLEARER, RARE, delay_odds, delays, distrust, doubted
+from estimator.smoothing.learning.delays import CLEARER, RARE, delays, distrust, doubted
 from estimator.smoothing.learning.range_noise import learn_ranging
 from estimator.smoothing.learning.unit_noise import learn
 from estimator.smoothing.learning.wrong_steps import withdraw
 from estimator.smoothing.problem.newton import RESTING, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
+from estimator.smoothing.told_causes import ask
 from estimator.smoothing.window import solve_for_headings, solve_if_due
 from estimator.smoothing.window_extent import spacing_s as usual_s
 
@@ -98,7 +99,7 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solution, list[Mode]]:
     for _ in range(DELAYS):
         judged = problem.solve(solved.x, iterations=0)
         judged.chain.reduce()
-        other = max((place.odds for place in ask_told_places(problem, judged)), default=-math.inf)
+        other = ask(problem, judged).odds
         found = doubted(delays(problem, judged), max(GAIN, other + CLEARER - RARE))
         if not found:
             break
@@ -146,17 +147,15 @@ def _initial_solution(state: FusionState) -> tuple[Problem, Solution]:
 
 
 def _freed(problem: Problem, solved: Solution) -> tuple[Problem, Solution]:
-    """The solution with all that does not stand where it was told to be where it stands."""
+    """The solution with all that was told wrongly put right: places, and fixes of those who fly."""
     for _ in range(MOVES):
-        places = ask_told_places(problem, solved)
-        if is_doubted(places) and not solved.rests:
+        causes = ask(problem, solved)
+        if causes.doubted and not solved.rests:
             solved = problem.solve(solved.x)
-            places = ask_told_places(problem, solved)
-        wrong = mistold(places, delay_odds(problem, solved)) if is_doubted(places) else None
-        if wrong is None:
-            break
+            causes = ask(problem, solved)
         state = problem.layout.state
-        free(state, wrong)
+        if not causes.correct(state):
+            break
         problem = _problem(state)
         solved = problem.solve(solved.x, SLACKS_M, resting=LEARNING_RESTING)
     return problem, solved

@@ -6,7 +6,7 @@ no reading inside the window stays linearised at an estimate that has turned out
 0006).
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection
 from functools import partial
 
 import numpy as np
@@ -25,14 +25,6 @@ from estimator.smoothing.changes.duplicate_names import tell_duplicate_names
 from estimator.smoothing.changes.moved_nodes import moved_nodes
 from estimator.smoothing.changes.recent_ranges import RecentRanges
 from estimator.smoothing.changes.separated_units import find_separated_units
-from estimator.smoothing.changes.told_places import (
-    ToldPlace,
-    ask_told_places,
-    doubts_of,
-    free,
-    is_doubted,
-    mistold,
-)
 from estimator.smoothing.images.alternatives import alternatives_now
 from estimator.smoothing.images.heading_images import reports_from, to_other_sides
 from estimator.smoothing.images.heard_radios import heard_by
@@ -42,12 +34,12 @@ from estimator.smoothing.images.solutions import SLACKS_M
 from estimator.smoothing.images.unit_mounting import likeliest_mounting
 from estimator.smoothing.images.unseen_climbs import find_unseen_climb, hinted
 from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.learning.delays import delay_odds
 from estimator.smoothing.learning.unit_noise import learn
 from estimator.smoothing.problem.gauge_turn import turned
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
+from estimator.smoothing.told_causes import NONE, ask
 from estimator.smoothing.window_extent import (
     LONGEST_S,
     SHORTEST_S,
@@ -174,11 +166,10 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         hand_back(state, layout, solved, left.matrix)
         for name, images in alternatives_now(layout, solved.x, [*modes, *others]).items():
             state.nodes[name] = replace(state.nodes[name], otherwise=images)
-        places = ask_told_places(problem, solved) if solved.rests else []
-        delays = delay_odds(problem, solved) if is_doubted(places) else {}
+        causes = ask(problem, solved) if solved.rests else NONE
         if solved.rests:
-            state.mistold = doubts_of(places, delays)
-        found = learn(state, problem, solved, other=places[0].odds if places else -np.inf)
+            causes.doubt(state)
+        found = learn(state, problem, solved, other=causes.odds)
         hearing = RecentRanges(problem, solved)
         find_separated_units(state, hearing, set_clocks(state, hearing, solved_t))
         tell_duplicate_names(state, hearing)
@@ -194,7 +185,9 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         state.prior, state.window_t = trimmed
         ledger.forget(state.window_t, ("pairs", "singles", "drops", "poses"))
         ledger.forget(state.window_t - STEPS_S, ("steps",))
-    _tell_mistold(state, places, delays)
+    # Where one is likely to be wrong, look again soon which one.
+    state.suspected = state.suspected or causes.wrong
+    causes.correct(state)
     return True
 
 
@@ -253,14 +246,6 @@ def _tell_changes(state: FusionState, problem: Problem, solved: Solution) -> Non
         branch(state, moved)
         state.due = True
     decide(state)
-
-
-def _tell_mistold(state: FusionState, places: Sequence[ToldPlace], delays: Mapping[str, float]) -> None:
-    """Let a place go that was told wrongly; where one is likely to be wrong, look again soon which one."""
-    state.suspected = state.suspected or bool(places and places[0].odds > 0.0)
-    wrong = mistold(places, delays)
-    if wrong is not None and state.life(wrong.number).index == wrong.number:
-        free(state, wrong, delays.get(wrong.name, -np.inf))
 
 
 def _judge_turns(problem: Problem, solved: Solution, found: Array, asked: Collection[int]) -> None:

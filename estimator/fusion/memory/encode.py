@@ -7,6 +7,7 @@ from estimator.fusion.learned.delays import Radio, Suspicion
 from estimator.fusion.learned.link_correlation import Links
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.learned.reach import Reach
+from estimator.fusion.learned.receivers import Receiver
 from estimator.fusion.learned.told_places import MistoldPlace
 from estimator.fusion.memory.hearing import Listener
 from estimator.fusion.memory.ledger import COLUMNS
@@ -66,6 +67,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     delays_t: float
     mistold: dict[str, MistoldPlace]
     altimeters: dict[str, float]
+    receivers: dict[str, Receiver]
     clocks: dict[str, float]
     reach: Reach
     listeners: dict[str, Listener]
@@ -116,6 +118,7 @@ def record_of(state: FusionState) -> FusionRecord:
         state.delays_t,
         dict(state.mistold),
         dict(state.altimeters),
+        dict(state.receivers),
         dict(state.clocks),
         state.reach,
         dict(state.listeners),
@@ -146,7 +149,7 @@ def state_of(record: FusionRecord) -> FusionState:
     state.delayed, state.delays_t = dict.fromkeys(record.delayed), record.delays_t
     state.suspects, state.mistold = dict(record.suspects), record.mistold
     state.altimeters = dict(record.altimeters)
-    state.clocks = dict(record.clocks)
+    state.receivers, state.clocks = dict(record.receivers), dict(record.clocks)
     state.reach, state.listeners = record.reach, record.listeners
     if record.prior is not None:
         matrix, vector, reference = (unpack(a) for a in record.prior.arrays)

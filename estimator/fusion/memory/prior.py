@@ -10,10 +10,18 @@ from estimator.graph.dense import Array
 
 Key = tuple[str, int]
 """A block: ("walk", node number) with a PDR unit's errors, ("free", node number) with a velocity, ("stand",
-node number), ("range", "rssi" or "altimeter", number of the technology)."""
+node number), ("range", "rssi", "altimeter" or "receiver", number of the technology)."""
 
 PLACED = ("walk", "free", "stand")
-SIZES: Mapping[str, int] = {"walk": 6, "free": 6, "stand": 3, "range": 2, "rssi": 2, "altimeter": 1}
+SIZES: Mapping[str, int] = {
+    "walk": 6,
+    "free": 6,
+    "stand": 3,
+    "range": 2,
+    "rssi": 2,
+    "altimeter": 1,
+    "receiver": 4,
+}
 """How many numbers each kind of block has."""
 
 
@@ -70,3 +78,17 @@ class Prior(NamedTuple):
         matrix[at, at] -= information
         vector[at] -= information * (mean - self.reference[at])
         return self._replace(matrix=matrix, vector=vector)
+
+    def moved(self, key: Key, number: int, by: float) -> "Prior":
+        """The same with one of a block's numbers counted from elsewhere, if it has that.
+
+        Args:
+            key: the block.
+            number: which of its numbers.
+            by: what it is more than it was.
+        """
+        if key not in self.keys:
+            return self
+        reference = self.reference.copy()
+        reference[sum(SIZES[kind] for kind, _ in self.keys[: self.keys.index(key)]) + number] += by
+        return self._replace(reference=reference)

@@ -14,6 +14,7 @@ from estimator.fusion.learned.gyros import bias_sigma_radps
 from estimator.fusion.learned.link_correlation import Links
 from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.learned.reach import Reach
+from estimator.fusion.learned.receivers import Receiver
 from estimator.fusion.learned.told_places import MistoldPlace
 from estimator.fusion.memory.hearing import Crossing, Listener
 from estimator.fusion.memory.ledger import RANGE, Ledger
@@ -67,6 +68,7 @@ class FusionState:
         delays_t: when that was asked last (s).
         mistold: told places that may be wrong, by node.
         altimeters: standard deviations of what they are off by beforehand, by their names (m).
+        receivers: what is known beforehand of the fixes of those who fly, by their names.
         clocks: how late ranges of radios are stamped against their bearers' steps, by node (s).
         reach: how far radios reach.
         listeners: what each radio has been hearing.
@@ -108,6 +110,7 @@ class FusionState:
         self.delays_t = -math.inf
         self.mistold: dict[str, MistoldPlace] = {}
         self.altimeters: dict[str, float] = {}
+        self.receivers: dict[str, Receiver] = {}
         self.clocks: dict[str, float] = {}
         self.reach = Reach()
         self.listeners: dict[str, Listener] = {}
@@ -128,7 +131,7 @@ class FusionState:
         twin.ended, twin.called, twin.listeners = dict(self.ended), dict(self.called), dict(self.listeners)
         twin.navigations, twin.notices = dict(self.navigations), []
         twin.delayed, twin.suspects = dict(self.delayed), dict(self.suspects)
-        twin.altimeters = dict(self.altimeters)
+        twin.altimeters, twin.receivers = dict(self.altimeters), dict(self.receivers)
         twin.clocks, twin.mistold = dict(self.clocks), dict(self.mistold)
         return twin
 

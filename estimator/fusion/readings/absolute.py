@@ -12,6 +12,7 @@ from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.heading_arcs import unbend
 from estimator.fusion.motion.recent_places import offset_of, turned_m
 from estimator.fusion.readings.altimeters import heard_altimeter
+from estimator.fusion.readings.receivers import receiver_of
 from estimator.fusion.rows.rows import Single
 from estimator.graph.robust import Mixture
 from estimator.graph.variable import Variable
@@ -39,27 +40,41 @@ def fix(state: FusionState, reading: Position) -> list[Single]:
     node = _told(state, node, replace(node.absolute, fixes=alike))
     if node.mode == "undecided":
         node = _told(state, node, replace(node.absolute, beginning="fix", counted_t=reading.t))
+        if node.role == "uav":
+            # Where he begins nobody knows but by fixes that all are off by the same.
+            place(state, node, reading.t, position, (physics.REACH_M,) * 3)
+            return []
         place(state, node, reading.t, position, sigma)
         state.count("fused")
         return []
     state.count("fused")
-    singles, offset = [], offset_of(state, node, reading.t)
+    name = receiver_of(state, node, sigma)
+    known = None if name is None else state.receivers[name]
+    receiver = None if name is None else Variable("receiver", name)
+    t = reading.t if known is None else reading.t - known.late_s
+    singles, offset = [], offset_of(state, node, t)
     if node.moving:
         here = state.place(node)
+        if receiver is not None:
+            here = here + state.graph.value(receiver)[:3]
         off_m = [position[i] - offset[i] - float(here[i]) for i in range(2)]
         node = check_fix(state, node, reading.t, off_m, max(*sigma[:2], physics.SIGMA_FLOOR_M))
     _tell_heights(state, node.node)
     if node.turned:
         # A fix on the arc would seem to be far off its tangent.
         unbend(state, node)
-    # Who flies is above what bends the paths of satellites.
+    # Who flies is above what bends the paths of satellites; what all his fixes share is a state.
     shared = 0.0 if node.role in physics.OUTSIDE_ROLES else physics.ABSOLUTE_SHARED
+    speed_mps = state.graph.value(node.velocity).tolist() if receiver and node.mode == "free" else [0.0] * 3
     for i in range(3):
         spread = alike.sigma(max(sigma[i], physics.SIGMA_FLOOR_M), shared)
-        _enter_single(state, node, reading.t, i, position[i], spread, physics.FIX_NOISE)
+        _enter_single(state, node, t, i, position[i], spread, physics.FIX_NOISE, name)
         if node.turned and i < 2:
             spread = float(np.hypot(spread, turned_m(offset)))
-        singles.append(Single(node.position, i, position[i] - offset[i], spread, physics.FIX_NOISE))
+        read_m = position[i] - offset[i]
+        singles.append(
+            Single(node.position, i, read_m, spread, physics.FIX_NOISE, None, receiver, speed_mps[i])
+        )
     return singles
 
 
@@ -130,9 +145,9 @@ def _enter_single(
     value: float,
     sigma: float,
     noise: Mixture,
-    altimeter: str | None = None,
+    read_by: str | None = None,
 ) -> None:
-    source = -1 if altimeter is None else state.source(altimeter)
+    source = -1 if read_by is None else state.source(read_by)
     state.ledger.add("singles", t, node.index, axis, value, sigma, physics.NOISES.index(noise), source)
 
 

@@ -17,6 +17,8 @@ from estimator.measurements.rssi import predict_rssi
 
 ONE = -1
 """Kind of a reading of one number; the others have the kinds of pairs in the ledger."""
+LATE = 3
+"""Which of a receiver's numbers is how late it is."""
 WIDTH = 8
 """Numbers that a reading depends on at most: two positions, and two states of a technology."""
 
@@ -31,6 +33,8 @@ class Single(NamedTuple):
         sigma: its standard deviation.
         noise: its outliers.
         altimeter: what the altimeter that has read it is off by; None: none has.
+        receiver: what the fix that tells it is off by; None: it is none of somebody who flies.
+        speed_mps: of the node along that axis, by which a fix that is late is off (m/s).
     """
 
     variable: Variable
@@ -39,6 +43,8 @@ class Single(NamedTuple):
     sigma: float
     noise: Mixture
     altimeter: Variable | None = None
+    receiver: Variable | None = None
+    speed_mps: float = 0.0
 
 
 class Row(NamedTuple):
@@ -54,16 +60,16 @@ class Row(NamedTuple):
         shift: see `Mixture`.
         spread: see `Mixture`.
         nominal: claimed or assumed standard deviation.
-        b: as `a`, of the other end.
-        extra: where the technology's states start, or those of the unit that a bearing is counted from. −1:
-            none.
+        b: as `a`, of the other end; of one number, row of how late it was told, −1: it was not.
+        extra: where the technology's states start, or those of the unit that a bearing is counted from; row
+            of what one number is off by. −1: none.
         constant: what is added to the first of them: reported heading (rad), sent power (dBm).
         source: number of the technology that its noise is learned for; −1: none.
         link: row of its link, see `links`; −1: none.
         a_e: where the end that measured stood at the reading's epoch, east of its block (m).
         a_n: the same, north.
         a_u: the same, up.
-        b_e: where the other end stood.
+        b_e: where the other end stood; of one number, how much less it is for each second that it is late.
         b_n: the same, north.
         b_u: the same, up.
     """
@@ -112,11 +118,19 @@ def table_of(starts: Mapping[Variable, int], singles: Sequence[Single], pairs: A
             s.sigma,
             *s.noise,
             s.sigma,
-            extra=-1 if s.altimeter is None else starts[s.altimeter],
+            b=-1 if s.receiver is None else starts[s.receiver] + LATE,
+            extra=_off_by(starts, s),
+            b_e=s.speed_mps,
         )
         for s in singles
     ]
     return np.concatenate([table_from(rows, FIELDS), pairs])
+
+
+def _off_by(starts: Mapping[Variable, int], single: Single) -> int:
+    if single.receiver is not None:
+        return starts[single.receiver] + single.axis
+    return -1 if single.altimeter is None else starts[single.altimeter]
 
 
 def table_from(rows: Sequence[Sequence[float]], width: int) -> Array:
@@ -132,6 +146,7 @@ def columns_of(table: Array) -> Indices:
     for r in range(m):
         if table[r, KIND] == ONE:
             columns[r, 0], columns[r, 6] = int(table[r, A]), int(table[r, EXTRA])
+            columns[r, 7] = int(table[r, B])
             continue
         for at, field, length in ((0, A, 3), (3, B, 3), (6, EXTRA, 2)):
             start = int(table[r, field])
@@ -177,7 +192,9 @@ def linearise(table: Array, columns: Indices, x: Array, jacobian: Array, residua
             jacobian[first:last, 0] = 1.0
             for r in range(first, last):
                 jacobian[r, 6] = 1.0 if columns[r, 6] >= 0 else 0.0
-            residual[first:last] = table[first:last, VALUE] - own[:, 0] - one
+                jacobian[r, 7] = -table[r, B_E] if columns[r, 7] >= 0 else 0.0
+            late = table[first:last, B_E] * two
+            residual[first:last] = table[first:last, VALUE] - own[:, 0] - one + late
         else:
             if kind == RANGE:
                 got = predict_range(own, others, one, two)

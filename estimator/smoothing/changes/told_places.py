@@ -91,8 +91,16 @@ def is_doubted(places: Sequence[ToldPlace]) -> bool:
     return bool(places) and places[0].odds > DOUBTED
 
 
-def judged(name: str, number: int, pull_m: Array, covariance_m2: Array, sigma_m: Array) -> ToldPlace:
-    """What everything else says of a told place.
+def judged(
+    name: str,
+    number: int,
+    pull_m: Array,
+    covariance_m2: Array,
+    sigma_m: Array,
+    wide_m: float = physics.MISTOLD_SIGMA_M,
+    rarely: float = RARELY,
+) -> ToldPlace:
+    """What everything else says of a told place, or of other numbers that were told.
 
     Args:
         name: of the node.
@@ -100,20 +108,22 @@ def judged(name: str, number: int, pull_m: Array, covariance_m2: Array, sigma_m:
         pull_m: where it is thought to be, less where it was told to be: east, north (m).
         covariance_m2: of that place, its told prior included, 2 × 2 (m²).
         sigma_m: of that prior: east, north (m).
+        wide_m: of each, if it is wrong (m).
+        rarely: log odds that it is, before anything is known.
     """
     known = np.linalg.inv(covariance_m2)
     values, vectors = np.linalg.eigh(known - np.diag(sigma_m**-2.0))
     others = (vectors * np.maximum(values, LEAST)) @ vectors.T
     apart = np.linalg.inv(others)
     off_m = apart @ known @ pull_m
-    right, wrong = apart + np.diag(sigma_m**2), apart + np.eye(2) * physics.MISTOLD_SIGMA_M**2
+    right, wrong = apart + np.diag(sigma_m**2), apart + np.eye(len(sigma_m)) * wide_m**2
     gain = 0.5 * float(off_m @ (np.linalg.solve(right, off_m) - np.linalg.solve(wrong, off_m)))
     rarer = 0.5 * (np.linalg.slogdet(wrong)[1] - np.linalg.slogdet(right)[1])
-    freed = np.linalg.inv(others + np.eye(2) / physics.MISTOLD_SIGMA_M**2)
+    freed = np.linalg.inv(others + np.eye(len(sigma_m)) / wide_m**2)
     there_m = freed @ others @ off_m
     gone_m = there_m - pull_m
     moment = np.outer(gone_m, gone_m) + freed - covariance_m2
-    return ToldPlace(name, number, gain - float(rarer) + RARELY, there_m, moment)
+    return ToldPlace(name, number, gain - float(rarer) + rarely, there_m, moment)
 
 
 def doubts_of(places: Sequence[ToldPlace], delays: Mapping[str, float]) -> dict[str, MistoldPlace]:

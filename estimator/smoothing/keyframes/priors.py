@@ -77,6 +77,12 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
             mean.append(0.0)
             known_by.append(state.altimeters[state.sources[key[1]]] ** -2)
             continue
+        if key[0] == "receiver":
+            receiver = state.receivers[state.sources[key[1]]]
+            at += range(size + start, size + start + 4)
+            mean += receiver.mean.tolist()
+            known_by += [sigma**-2 for sigma in receiver.sigma]
+            continue
         at += [size + start, size + start + 1]
         if key[0] == "range":
             name = state.sources[key[1]]

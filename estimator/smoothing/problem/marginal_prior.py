@@ -6,7 +6,6 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from estimator.fusion import physics
 from estimator.fusion.memory.prior import SIZES, Key, Prior
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array, Indices
@@ -17,10 +16,8 @@ from estimator.smoothing.chain.groups import Group
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.unknowns import Unknowns
 from estimator.smoothing.keyframes.walks import HEADING, PLACES, STATES
+from estimator.smoothing.problem.drifts import drifted
 from estimator.smoothing.problem.gauge_turn import moved_from, turn_between
-
-OLDEST = 1.0 / 6.0
-"""Share of a window that goes when it has become long."""
 
 
 class SharedNumbers(NamedTuple):
@@ -55,8 +52,9 @@ class MarginalPrior:
         columns = [_columns(layout, key) for key in prior.keys]
         at = np.concatenate(columns or [np.zeros(0, dtype=np.intp)]).astype(np.intp)
         kept, gone = np.flatnonzero(at >= 0), np.flatnonzero(at < 0)
+        prior = drifted(prior, layout)
         self._at, self._reference = at[kept], prior.reference[kept]
-        self._matrix, self._vector = _drifted(prior, layout)
+        self._matrix, self._vector = prior.matrix, prior.vector
         if len(gone):
             # Held where they were, they would not let the map turn.
             self._matrix, self._vector = marginalised(self._matrix, self._vector, gone, kept)
@@ -169,26 +167,6 @@ def _turning(prior: Prior, columns: Indices, kept: Indices) -> Turning:
         start += SIZES[kind]
     pairs = [np.searchsorted(kept, np.array(each, dtype=np.intp).reshape(-1, 2)) for each in (places, speeds)]
     return Turning(pairs[0], pairs[1], np.searchsorted(kept, np.array(headings, dtype=np.intp)))
-
-
-def _drifted(prior: Prior, layout: Layout) -> tuple[Array, Array]:
-    """A prior's matrix and vector, with altimeters that have walked on since.
-
-    A window's altimeter is off by one number all along. By as much as the window has grown since its oldest
-    keyframes went, as many seconds will go with the next ones.
-    """
-    kinds = [kind for kind, _ in prior.keys]
-    starts = np.cumsum([0, *(SIZES[kind] for kind in kinds)])[:-1]
-    rows = starts[[kind == "altimeter" for kind in kinds]]
-    walked_m2 = physics.HEIGHT_WALK_M_PER_ROOT_S**2 * OLDEST * float(layout.grid[-1] - layout.grid[0])
-    if not len(rows) or walked_m2 <= 0.0:
-        return prior.matrix, prior.vector
-    matrix, vector = prior.matrix.copy(), prior.vector.copy()
-    own = matrix[np.ix_(rows, rows)] + np.eye(len(rows)) / walked_m2
-    gain = np.linalg.solve(own, matrix[rows])
-    matrix -= matrix[:, rows] @ gain
-    vector -= gain.T @ vector[rows]
-    return 0.5 * (matrix + matrix.T), vector
 
 
 def _columns(layout: Layout, key: Key) -> Indices:

@@ -32,7 +32,9 @@ class Readings(NamedTuple):
         b: second ends.
         axis: what a single tells of its node: 0 to 2 the place, above it the number itself, n.
         told: what it tells, n.
-        altimeter: where what its altimeter is off by is in the flat unknowns, n; −1: it has none.
+        off: where what its altimeter or receiver is off by, and how late, is in the flat unknowns, n × 2; −1:
+            it has none.
+        speed: how much less it tells for each second that it is late, n (m/s).
         on: ends of the singles.
         by: who dropped, d.
         crumb: what was dropped, d.
@@ -47,7 +49,8 @@ class Readings(NamedTuple):
     b: Table
     axis: Integers
     told: Array
-    altimeter: Integers
+    off: Integers
+    speed: Array
     on: Table
     by: Table
     crumb: Table
@@ -128,8 +131,10 @@ def residuals(readings: Readings, x: Array) -> Array:
         axis = readings.axis[i]
         place_end(on, i, numbers, a, turned)
         here = a[axis] if axis < 3 else x[on.at[i, axis]]
-        if readings.altimeter[i] >= 0:
-            here += x[readings.altimeter[i]]
+        if readings.off[i, 0] >= 0:
+            here += x[readings.off[i, 0]]
+        if readings.off[i, 1] >= 0:
+            here -= readings.speed[i] * x[readings.off[i, 1]]
         found[m + i] = readings.told[i] - here
     for i in range(d):
         place_end(by, i, numbers, a, turned)
@@ -170,12 +175,14 @@ def jacobians(readings: Readings, x: Array) -> Array:
     for i in range(n):
         row, axis = found[m + i], readings.axis[i]
         row[axis] = 1.0
-        if readings.altimeter[i] >= 0:
+        if readings.off[i, 0] >= 0:
             row[12] = 1.0
         if axis < 3:
             by_a[:] = 0.0
             place_end(on, i, numbers, a, by_a)
             row[3:6] = by_a[axis]
+        if readings.off[i, 1] >= 0:
+            row[13] = -readings.speed[i]
     for i in range(d):
         by_a[:], by_b[:] = 0.0, 0.0
         place_end(by, i, numbers, a, by_a)

@@ -17,6 +17,7 @@ from estimator.measurements.bearing import wrap
 from estimator.smoothing.keyframes.ends import FREE, UNIT, ground_of, place_ends
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.unknowns import Unknowns
+from estimator.smoothing.readings.fix_speeds import fix_speeds
 from estimator.smoothing.readings.linearisation import (
     Readings,
     add_reckoning_noise,
@@ -29,7 +30,7 @@ from estimator.smoothing.readings.obstructed import excess
 from estimator.smoothing.readings.partial import partial
 from estimator.smoothing.readings.stacked import NOISES, StackedReadings, scattered, sigmas
 from estimator.smoothing.readings.thinning import once_a_second
-from estimator.smoothing.readings.window_readings import ALTIMETER, LedgerRows, window_readings
+from estimator.smoothing.readings.window_readings import ALTIMETER, RECEIVER, LedgerRows, window_readings
 
 PER_ROW = ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike", "turns", "told", "_alone")
 """What there is one of for each row."""
@@ -94,7 +95,9 @@ class Rows:
         self._usual_noise: Array = self.noise
         self._white, self._common = self.nominal**2, np.zeros(len(self.nominal))
         self._inside, self._strongest, self._unsure_m2 = found.inside, found.strongest, found.unsure_m2
-        self._bearings, self._readings = found.bearings, found.readings
+        self._bearings = found.bearings
+        speeds = fix_speeds(self.singles, found.readings.off[:, 1], ledger.table("poses"))
+        self._readings = found.readings._replace(speed=speeds)
 
     def of(self, numbers: Sequence[int]) -> NDArray[np.bool_]:
         """Which of them tell of some walks, or of what these have dropped, m.
@@ -259,10 +262,10 @@ class Rows:
 def technologies_of(layout: Layout) -> Integers:
     """First column of each technology of a window, kinds × sources; −1: there is none.
 
-    After those of the kinds of pairs stand altimeters.
+    After those of the kinds of pairs stand altimeters and receivers.
     """
-    found = np.full((ALTIMETER + 1, len(layout.state.sources)), -1, dtype=np.int64)
-    of_kind = {"range": RANGE, "rssi": RSSI, "altimeter": ALTIMETER}
+    found = np.full((RECEIVER + 1, len(layout.state.sources)), -1, dtype=np.int64)
+    of_kind = {"range": RANGE, "rssi": RSSI, "altimeter": ALTIMETER, "receiver": RECEIVER}
     for (kind, source), start in layout.technologies.items():
         found[of_kind[kind], source] = layout.width + start
     return found

@@ -65,7 +65,7 @@ def arrange(
         drops: the same, d × 3.
         slab: keyframe of each pair, m.
         extra: columns of its technology, m × 2; −1: it has none.
-        off: column of each single's altimeter, n; −1: it has none.
+        off: columns of what each single's altimeter or receiver is off by, and how late, n × 2; −1: none.
         a: first ends of the pairs.
         b: second ends.
         on: ends of the singles.
@@ -90,7 +90,7 @@ def arrange(
     for k in range(n):
         i, kind = m + k, int(singles[k, 5])
         t[i], found[i], nominal[i] = singles[k, 0], on.slab[k], singles[k, 4]
-        columns[i, 2 * size] = off[k]
+        columns[i, 2 * size], columns[i, 2 * size + 1] = off[k, 0], off[k, 1]
         for c in range(size):
             columns[i, c] = on.columns[k, c]
         for c in range(3):

@@ -7,17 +7,18 @@ from numba import njit
 from numpy.typing import NDArray
 
 from estimator.fusion.memory.ledger import BEARING, GYRO_BIAS, RSSI
+from estimator.fusion.rows.rows import LATE
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.smoothing.keyframes.ends import UNIT, Ends, Ground, ends_of, selected_ends
+from estimator.smoothing.keyframes.ends import FREE, UNIT, Ends, Ground, ends_of, selected_ends
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.readings.encounters import candidates
 from estimator.smoothing.readings.linearisation import Readings
 from estimator.smoothing.readings.selection import choose
 from estimator.smoothing.readings.stacked import StackedReadings, arrange
 
-ALTIMETER = BEARING
-"""Where altimeters stand among technologies."""
+ALTIMETER, RECEIVER = BEARING, BEARING + 1
+"""Where altimeters stand among technologies, and receivers."""
 
 
 class LedgerRows(NamedTuple):
@@ -99,10 +100,15 @@ def window_readings(
     usable = by.stood.usable & crumb.stood.usable
     drops, by, crumb = selected_rows(drops, usable), selected_ends(by, usable), selected_ends(crumb, usable)
     stood = a.stood, b.stood, on.stood, by.stood, crumb.stood
-    off = np.full(len(singles), -1, dtype=np.int64)
+    off = np.full((len(singles), 2), -1, dtype=np.int64)
     for i in range(len(singles)):
         if singles[i, 6] >= 0.0:
-            off[i] = technology[ALTIMETER, int(singles[i, 6])]
+            off[i, 0] = technology[ALTIMETER, int(singles[i, 6])]
+            receiver = technology[RECEIVER, int(singles[i, 6])]
+            if receiver >= 0:
+                off[i, 0] = receiver + int(singles[i, 2])
+            if receiver >= 0 and on.stood.kind[i] == FREE:
+                off[i, 1] = receiver + LATE
     rows = arrange(pairs, singles, drops, found.slab[found.chosen], extra, off, *stood)
     readings = read(pairs, singles, extra, off, ground, (a, b, on, by, crumb), headings)
     turns = np.zeros(len(rows.t), dtype=np.bool_)
@@ -152,13 +158,13 @@ def read(
     ends: tuple[Ends, Ends, Ends, Ends, Ends],
     headings: Integers,
 ) -> Readings:
-    """All that the residuals of readings follow from.
+    """All that the residuals of readings follow from, but for how fast who flies goes.
 
     Args:
         pairs: rows of the ledger, m × 11.
         singles: the same, n × 7.
         extra: columns of each pair's technology, m × 2; −1: it has none.
-        off: column of each single's altimeter, n; −1: it has none.
+        off: columns of what each single's altimeter or receiver is off by, and how late, n × 2; −1: none.
         ground: of the window.
         ends: of the pairs, a and b, of the singles, who dropped, and what was dropped.
         headings: see `Readings`.
@@ -170,10 +176,7 @@ def read(
         for c in range(2):
             if extra[i, c] >= 0:
                 at[i, c] = border + extra[i, c]
-    altimeter = np.full(len(singles), -1, dtype=np.int64)
-    for i in range(len(singles)):
-        if off[i] >= 0:
-            altimeter[i] = border + off[i]
+    where = np.where(off >= 0, border + off, -1)
     return Readings(
         numbers(pairs, 1),
         pairs[:, 4].copy(),
@@ -183,7 +186,8 @@ def read(
         b.table,
         numbers(singles, 2),
         singles[:, 3].copy(),
-        altimeter,
+        where,
+        np.zeros(len(singles)),
         on.table,
         by.table,
         crumb.table,

@@ -8,15 +8,16 @@ from msgspec.structs import replace
 
 from estimator.fusion.learned.calibration import Calibration, doubt
 from estimator.graph.dense import Array
-from estimator.smoothing.changes.told_places import ask_told_places, doubts_of, is_doubted
+from estimator.smoothing.changes.told_fixes import shared_moments
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES
-from estimator.smoothing.learning.delays import delay_odds, scored_delays
+from estimator.smoothing.learning.delays import scored_delays
 from estimator.smoothing.learning.radios import ranges_by_radio
 from estimator.smoothing.learning.suspected_delays import suspects
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.results.heading_arcs import responses
+from estimator.smoothing.told_causes import ask
 
 
 def scales(layout: Layout) -> dict[int, Calibration]:
@@ -70,21 +71,27 @@ def suspected(problem: Problem, solved: Solution) -> list[Doubt]:
     """
     told = ranges_by_radio(problem, solved)
     radios = suspects(problem, solved, told, scored_delays(problem, solved, told))
-    return [*(Doubt(one.off_m2, one.moved) for one in radios), *_places(problem, solved)]
+    return [*(Doubt(one.off_m2, one.moved) for one in radios), *_told(problem, solved)]
 
 
-def _places(problem: Problem, solved: Solution) -> list[Doubt]:
-    """Told places that may be wrong: everything goes along with such a place p by L⁻¹_xp (L⁻¹_pp)⁻¹."""
-    layout, places = problem.layout, ask_told_places(problem, solved)
-    if not is_doubted(places):
-        return []
-    wrong = doubts_of(places, delay_odds(problem, solved))
+def _told(problem: Problem, solved: Solution) -> list[Doubt]:
+    """Told places and fixes that may be wrong: all goes along with such numbers p by L⁻¹_xp (L⁻¹_pp)⁻¹."""
+    layout, causes = problem.layout, ask(problem, solved)
     size, found = layout.length * layout.width, []
-    for place in places:
-        start = size + layout.stands[place.number]
-        across = responses(layout, solved, [start, start + 1])
-        along = np.linalg.solve(across[start : start + 2], across.T).T
-        squares, axes = np.linalg.eigh(wrong[place.name].moment_m2)
+    wrong = causes.doubted_places()
+    told = [
+        (layout.stands[place.number], slice(0, 2), wrong[place.name].moment_m2)
+        for place in causes.places
+        if place.name in wrong
+    ]
+    for fixes, moment in shared_moments(causes.fixes, causes.besides_fixes()):
+        number = layout.state.source(fixes.name)
+        told.append((layout.technologies["receiver", number], fixes.own, moment))
+    for start, own, moment in told:
+        first, last = size + start + own.start, size + start + own.stop
+        across = responses(layout, solved, list(range(first, last)))
+        along = np.linalg.solve(across[first:last], across.T).T
+        squares, axes = np.linalg.eigh(moment)
         found += [
             Doubt(square, along @ axis)
             for square, axis in zip(np.maximum(squares, 0.0).tolist(), axes.T, strict=True)
