@@ -36,7 +36,7 @@ class RangesByRadio(NamedTuple):
 
     Attributes:
         radios: those that are asked.
-        ranges: which of the window's rows they are, m.
+        ranges: which of the window's rows they are, in order of epoch, m.
         carried: which of the radios are at both ends of each, m × 2; −1: one that is not asked.
         half: in which half of the time it is to each end, m × 2.
         score: of a bias of each radio in both halves, radios × 2.
@@ -55,6 +55,7 @@ def ranges_by_radio(problem: Problem, solved: Solution) -> RangesByRadio:
     """Group a solution's ranges by the radios at their ends, but for those known to have a delay."""
     rows, state = problem.rows, problem.layout.state
     ranges, nodes = np.flatnonzero(rows.pairs[:, 1] == RANGE), len(state.owners)
+    ranges = ranges[np.argsort(rows.pairs[ranges, 0], kind="stable")]
     keys = rows.pairs[ranges, 6:7].astype(np.intp) * nodes + rows.pairs[ranges, 2:4].astype(np.intp)
     place = np.full(nodes * len(state.sources), -1)
     each: dict[Radio, int] = {}

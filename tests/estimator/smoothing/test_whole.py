@@ -10,9 +10,10 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.whole import first_pass, solve_whole
+from estimator.smoothing.whole import first_pass, solve_whole, sort_by_walk
 from estimator.trackers.batch import in_order
-from tests.estimator.smoothing.windows import entered
+from tests.estimator.smoothing.windows import entered, fused, problem_of
+from tests.estimator.walks import two_responders
 
 SECONDS, PACE_MPS = 600, 0.4
 BEACONS_M = {
@@ -56,3 +57,28 @@ def test_what_is_assumed_of_walls_makes_no_unit_better_than_it_is(factor: float)
         problem, *_ = solve_whole(first_pass(in_order(searched(factor, seed))))
         learned.append(problem.layout.state.nodes["ff1"].walk_factors[0])
     assert float(np.exp(np.mean(np.log(learned)))) == pytest.approx(factor, rel=0.35)
+
+
+def test_the_pairs_of_one_walk_stand_behind_each_other_each_walks_as_they_were() -> None:
+    state = fused(two_responders())
+    before = state.ledger.table("pairs").copy()
+    sort_by_walk(state)
+    after, walking = state.ledger.table("pairs"), state.ledger.table("begins")[:, 1]
+    walk = np.where(np.isin(after[:, 2:4], walking), after[:, 2:4], np.inf).min(axis=1)
+    assert len(np.unique(walk)) > 1
+    assert (np.diff(walk[np.isfinite(walk)]) >= 0.0).all()
+    of_before = np.where(np.isin(before[:, 2:4], walking), before[:, 2:4], np.inf).min(axis=1)
+    for each in np.unique(walk):
+        assert np.array_equal(after[walk == each], before[of_before == each])
+
+
+def test_a_solution_does_not_depend_on_the_order_of_the_pairs() -> None:
+    state = fused(two_responders())
+    as_they_came = problem_of(state)
+    expected = as_they_came.solve(as_they_came.layout.start())
+    sort_by_walk(state)
+    by_walk = problem_of(state)
+    found = by_walk.solve(by_walk.layout.start())
+    assert not np.array_equal(by_walk.rows.t, as_they_came.rows.t)
+    assert found.cost == pytest.approx(expected.cost, rel=1e-12)
+    assert found.x == pytest.approx(expected.x, abs=1e-8)

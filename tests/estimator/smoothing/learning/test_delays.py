@@ -10,7 +10,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.smoothing.learning.delays import delay_of, delays, doubted
-from estimator.smoothing.learning.radios import Delay
+from estimator.smoothing.learning.radios import Delay, ranges_by_radio
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.whole import SLACKS_M
@@ -93,3 +93,16 @@ def test_a_radio_may_be_off_by_what_readings_and_both_kinds_of_radios_leave_open
     square = float((density * off_m**2).sum() / density.sum())
     assert found is not None
     assert found.off_m2 == pytest.approx(max(square - usual, 0.0), rel=1e-6, abs=1e-9)
+
+
+def test_the_halves_of_the_time_are_those_of_epochs_whatever_the_order_of_the_ledger() -> None:
+    state = fused(round_the_vehicle(0, 0.0))
+    pairs = state.ledger.table("pairs")
+    state.ledger.replace("pairs", pairs[np.argsort(pairs[:, 3], kind="stable")])
+    problem = problem_of(state)
+    told_of = ranges_by_radio(problem, problem.solve(problem.layout.start()))
+    t, (radio,) = problem.rows.t[told_of.ranges], [r for r, (_, n) in enumerate(told_of.radios) if n == "f"]
+    end = np.argmax(told_of.carried == radio, axis=1)
+    late = told_of.half[np.arange(len(t)), end] == 1
+    assert late.any()
+    assert t[~late].max() <= t[late].min()
