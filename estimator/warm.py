@@ -151,7 +151,9 @@ def _warm_chain() -> None:
     rows = found.rows
     readings = Readings(slab, one, one, pair, end, end, slab, one, pair, one, end, end, end, slab)
     residuals(readings, x)
-    add_reckoning_noise(jacobians(readings, x), place, place, place, place, np.ones(5))
+    jacobian = np.zeros((5, ANY))
+    jacobians(readings, x, jacobian)
+    add_reckoning_noise(jacobian, place, place, place, place, np.ones(5))
     separations(readings, x)
     scale_sigmas(readings, x, no, True, no, one, one, one)
     excess(slab, one, one, one)

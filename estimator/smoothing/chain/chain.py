@@ -18,12 +18,12 @@ from estimator.graph.assembly import add_part
 from estimator.graph.dense import Array, factorise, inverse, log_determinant, mended, solve
 from estimator.smoothing.chain.groups import Group
 from estimator.smoothing.chain.parallel import in_parallel
-from estimator.smoothing.chain.strand import Strand
+from estimator.smoothing.chain.strand import Strand, strands_of
 
 NOTHING = factorise(np.zeros((0, 0)))
-LARGE = 2_000_000
-"""From so many numbers on strands are worked on at once: it is a whole incident then, and somebody waits.
-Windows, which are solved every few seconds, stay on one core."""
+LARGE = 500_000
+"""From so many numbers on strands are worked on at once, if somebody waits: smaller ones are done before
+threads have begun."""
 
 T = TypeVar("T")
 
@@ -55,6 +55,13 @@ class Explained(NamedTuple):
 class Chain:
     """Normal matrix and gradient of a chain, to be filled and then solved once.
 
+    Args:
+        length: k.
+        width: n.
+        groups: of its walks; the last one has none and all of the border.
+        waited: somebody waits for it: strands may be worked on at once. Windows of a live incident, which are
+            solved every few seconds, stay on one core.
+
     Attributes:
         strands: the chain of each group; of the last one there is only the border.
         width: n.
@@ -62,23 +69,23 @@ class Chain:
         promised: after `solve`: half the product of the gradient and the step, what a parabola gains by it.
     """
 
-    def __init__(self, length: int, width: int, groups: Sequence[Group]) -> None:
-        self.strands = [Strand(length, group) for group in groups]
+    def __init__(self, length: int, width: int, groups: Sequence[Group], waited: bool = False) -> None:
+        self.strands = strands_of(length, groups)
         self.width = width
         self.lasting = len(groups[-1].lasting)
         self.promised = 0.0
         self._length = length
         self._cholesky = NOTHING
-        self._large = sum(strand.wide.size for strand in self.strands) >= LARGE
+        self._at_once = waited and sum(strand.wide.size for strand in self.strands) >= LARGE
 
     def each(self, work: Callable[..., T], *own: Iterable[object]) -> list[T]:
-        """What some work on each of its strands gives, in their order; at once where the chain is large.
+        """What some work on each of its strands gives, in their order; at once where it is worth it.
 
         Args:
             work: takes a strand, and of each of `own` what is the strand's; changes that strand only.
             own: as many of each as there are strands.
         """
-        if self._large:
+        if self._at_once:
             return in_parallel(work, self.strands, *own)
         return [work(*row) for row in zip(self.strands, *own, strict=True)]
 

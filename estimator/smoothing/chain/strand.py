@@ -5,6 +5,7 @@ Kirchhoff matrix of its part of the border. Cost grows with the length of the ch
 """
 
 from collections.abc import Sequence
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -47,15 +48,10 @@ class Strand:
         newton_decrement: gᵀ D⁻¹ g of the keyframes eliminated so far, each one's as it was by then.
     """
 
-    def __init__(self, length: int, group: Group) -> None:
+    def __init__(self, group: Group, blocks: Sequence[Array]) -> None:
+        """Take what `strands_of` has laid out for it: nil so far."""
         self.group = group
-        width, border, blocks = len(group.columns), len(group.lasting), len(group.walks)
-        size = width // max(blocks, 1)
-        self.diagonal: Array = np.zeros((length, width, width))
-        self.link: Array = np.zeros((max(length - 1, 0), blocks, size, size))
-        self.wide: Array = np.zeros((length, width, border + 1))
-        self.corner: Array = np.zeros((border, border))
-        self.corner_gradient: Array = np.zeros(border)
+        self.diagonal, self.link, self.wide, self.corner, self.corner_gradient = blocks
         self.newton_decrement = 0.0
         self._done = 0
 
@@ -174,3 +170,33 @@ class Strand:
         if blocks:
             selected_inverse(self.diagonal, self.link, self.wide, border, found, ahead)
         return found, ahead
+
+
+def strands_of(length: int, groups: Sequence[Group]) -> list[Strand]:
+    """The strands of a chain, nil so far, in one block of memory.
+
+    A block of megabytes is given in pages of megabytes. Each array by itself would get them four kilobytes at
+    a time, and having pages made takes longer than what a step of a whole incident does with them.
+
+    Args:
+        length: how many keyframes.
+        groups: one for each strand.
+    """
+    shapes = [_shapes(length, group) for group in groups]
+    memory = np.zeros(sum(prod(shape) for own in shapes for shape in own))
+    strands, at = [], 0
+    for group, own in zip(groups, shapes, strict=True):
+        blocks = []
+        for shape in own:
+            blocks.append(memory[at : at + prod(shape)].reshape(shape))
+            at += prod(shape)
+        strands.append(Strand(group, blocks))
+    return strands
+
+
+def _shapes(length: int, group: Group) -> tuple[tuple[int, ...], ...]:
+    """Of D, E, B with its gradient, C and its gradient."""
+    width, border, blocks = len(group.columns), len(group.lasting), len(group.walks)
+    size = width // max(blocks, 1)
+    link = max(length - 1, 0), blocks, size, size
+    return (length, width, width), link, (length, width, border + 1), (border, border), (border,)

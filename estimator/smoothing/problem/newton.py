@@ -156,14 +156,12 @@ class Problem:
         """
         layout, rows = self.layout, self.rows
         length = layout.length if until is None else until + 1
-        chain = Chain(length, layout.width, self.coupled.groups.each)
+        chain = Chain(length, layout.width, self.coupled.groups.each, layout.state.ledger.complete)
         ways: list[list[WalkMotion]] = [[] for _ in chain.strands]
         for i, (walk, motion) in enumerate(zip(layout.walks, motions, strict=True)):
             group, block = self.coupled.groups.home(i)
             ways[group].append(WalkMotion(block, walk.first, walk.last, motion))
-        # Its memory is written first here: threads that do so wait for each other.
-        for strand, own in zip(chain.strands, ways, strict=True):
-            strand.add_motions(own)
+        chain.each(Strand.add_motions, ways)
         if self._carried is not None:
             self._carried.add(chain, self.coupled.shared, x)
         if self.aside is not None:

@@ -145,10 +145,16 @@ def residuals(readings: Readings, x: Array) -> Array:
 
 
 @njit(cache=True)
-def jacobians(readings: Readings, x: Array) -> Array:
-    """Derivatives of all rows by what each depends on, at an estimate x, flat: 14 of each."""
+def jacobians(readings: Readings, x: Array, found: Array) -> None:
+    """Derivatives of all rows by what each depends on.
+
+    Args:
+        readings: of the window.
+        x: the estimate, flat.
+        found: takes them, rows × 14; zeros before. Numpy is given memory for it in large pages, a compiled
+            loop would wait for thousands of small ones.
+    """
     m, n, d = len(readings.kind), len(readings.axis), len(readings.by.kind)
-    found = np.zeros((m + n + 3 * d, ANY))
     a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
     slope = np.empty(3)
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
@@ -193,7 +199,6 @@ def jacobians(readings: Readings, x: Array) -> Array:
                 row[c], row[3:6] = -1.0, -by_a[c]
             if crumb.kind[i] != FIXED:
                 row[6 + c], row[9:12] = 1.0, by_b[c]
-    return found
 
 
 @njit(cache=True)

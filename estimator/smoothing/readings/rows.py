@@ -19,6 +19,7 @@ from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.unknowns import Unknowns
 from estimator.smoothing.readings.fix_speeds import fix_speeds
 from estimator.smoothing.readings.linearisation import (
+    ANY,
     Readings,
     add_reckoning_noise,
     jacobians,
@@ -251,7 +252,9 @@ class Rows:
 
     def jacobian(self, x: Array) -> Array:
         """Derivatives at an estimate x, flat, m × 14."""
-        return jacobians(self._readings, x)
+        found = np.zeros((len(self.nominal), ANY))
+        jacobians(self._readings, x, found)
+        return found
 
     @property
     def readings(self) -> Readings:

@@ -39,18 +39,33 @@ def test_what_one_of_them_raises_is_raised_when_all_have_ended() -> None:
     assert sorted(ended) == [3, 4, 5, 6]
 
 
-def test_a_window_solved_at_once_is_the_same_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem = problem_of(fused(two_responders()))
-    x = problem.layout.start()
-    one_by_one = problem.solve(x)
+def watched(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """What is worked on at once from now on, by name: all that may be, however small."""
     used: list[str] = []
 
-    def watched(work: Callable[..., object], *items: Iterable[object]) -> list[object]:
+    def at_once(work: Callable[..., object], *items: Iterable[object]) -> list[object]:
         used.append(getattr(work, "__qualname__", "?"))
         return in_parallel(work, *items)
 
     monkeypatch.setattr(chain, "LARGE", 0)
-    monkeypatch.setattr(chain, "in_parallel", watched)
+    monkeypatch.setattr(chain, "in_parallel", at_once)
+    return used
+
+
+def test_a_window_of_a_live_incident_stays_on_one_core(monkeypatch: pytest.MonkeyPatch) -> None:
+    state = fused(two_responders())
+    state.ledger.complete = False
+    problem = problem_of(state)
+    used = watched(monkeypatch)
+    problem.solve(problem.layout.start())
+    assert not used
+
+
+def test_a_window_solved_at_once_is_the_same_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = problem_of(fused(two_responders()))
+    x = problem.layout.start()
+    one_by_one = problem.solve(x)
+    used = watched(monkeypatch)
     together = problem.solve(x)
     assert len(together.chain.strands) > 2
     assert used
