@@ -28,8 +28,8 @@ MOVING_MPS = 0.3
 def covariance_of(state: FusionState) -> Array:
     """Σ of the graph, n × n.
 
-    It holds also that radios may be calibrated otherwise than is assumed, and told places and fixes be wrong; and
-    that a bearer is not where his boot stands.
+    It holds also that radios may be calibrated otherwise than is assumed, and told places and fixes be wrong;
+    and that a bearer is not where his boot stands.
     """
     graph = state.graph
     found = graph.covariance()
