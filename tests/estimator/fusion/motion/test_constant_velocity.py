@@ -35,7 +35,8 @@ def test_a_node_that_was_silent_for_long_is_found_where_it_is_heard_again(silenc
     found = tracker.estimates()[0]
     assert found.position_m == pytest.approx(far, abs=6.0)
     assert found.covariance_m2 is not None
-    assert 0.1 < found.covariance_m2[0] < 2.0
+    # What this fix errs by, what all are off by (1 m² each), and how late it may be while he flies.
+    assert 0.1 < found.covariance_m2[0] < 3.0
 
 
 @pytest.mark.parametrize("switched_on_s", [60, 400])
