@@ -12,9 +12,10 @@ from msgspec.structs import replace
 
 from estimator.graph.dense import Array
 
-OFFSET_NUMBERS = 3
-OFFSET, LATE = slice(0, 2), slice(3, 4)
-"""Which of a receiver's four numbers are asked about: what it is off by in the plane, and how late it is."""
+OFFSET_NUMBERS, LATE_NUMBER = 3, 3
+"""A receiver has four numbers: what it is off by, east, north and up, and how late it is."""
+OFFSET, LATE = slice(0, 2), slice(LATE_NUMBER, LATE_NUMBER + 1)
+"""Which of them are asked about: what it is off by in the plane, and how late it is."""
 
 
 class Doubt(NamedTuple):

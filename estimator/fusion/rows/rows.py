@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from estimator.fusion.learned.receivers import LATE_NUMBER
 from estimator.fusion.memory.ledger import BEARING, RANGE, RSSI
 from estimator.graph.dense import Array, Indices
 from estimator.graph.robust import Mixture
@@ -17,8 +18,6 @@ from estimator.measurements.rssi import predict_rssi
 
 ONE = -1
 """Kind of a reading of one number; the others have the kinds of pairs in the ledger."""
-LATE = 3
-"""Which of a receiver's numbers is how late it is."""
 WIDTH = 8
 """Numbers that a reading depends on at most: two positions, and two states of a technology."""
 
@@ -118,7 +117,7 @@ def table_of(starts: Mapping[Variable, int], singles: Sequence[Single], pairs: A
             s.sigma,
             *s.noise,
             s.sigma,
-            b=-1 if s.receiver is None else starts[s.receiver] + LATE,
+            b=-1 if s.receiver is None else starts[s.receiver] + LATE_NUMBER,
             extra=_off_by(starts, s),
             b_e=s.speed_mps,
         )

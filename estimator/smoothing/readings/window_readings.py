@@ -6,8 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from estimator.fusion.learned.receivers import LATE_NUMBER
 from estimator.fusion.memory.ledger import BEARING, GYRO_BIAS, RSSI
-from estimator.fusion.rows.rows import LATE
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.ends import FREE, UNIT, Ends, Ground, ends_of, selected_ends
@@ -108,7 +108,7 @@ def window_readings(
             if receiver >= 0:
                 off[i, 0] = receiver + int(singles[i, 2])
             if receiver >= 0 and on.stood.kind[i] == FREE:
-                off[i, 1] = receiver + LATE
+                off[i, 1] = receiver + LATE_NUMBER
     rows = arrange(pairs, singles, drops, found.slab[found.chosen], extra, off, *stood)
     readings = read(pairs, singles, extra, off, ground, (a, b, on, by, crumb), headings)
     turns = np.zeros(len(rows.t), dtype=np.bool_)

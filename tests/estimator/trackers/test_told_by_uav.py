@@ -16,6 +16,7 @@ from estimator.measurements.range import Range
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, SURE, outside
+from tests.estimator.trackers.restarts import assert_goes_on_alike
 
 SECONDS, SINCE, SEEDS = 120, 20, (61, 62, 63)
 FIX_SIGMA_M, RANGE_SIGMA_M, UP_M = (1.0, 1.0, 1.5), 0.12, 1.0
@@ -143,15 +144,7 @@ def test_nothing_is_said_of_fixes_that_are_right(base: bool) -> None:
 
 
 def test_pictures_are_the_same_after_a_restart_while_fixes_are_in_doubt() -> None:
-    told = world(62, late_s=1.0)
-    tracker = KirchhoffTracker()
-    tracker.fold([r for r in told.readings if r.t <= 40.0])
-    again = KirchhoffTracker.restore(tracker.snapshot())
-    assert again.estimates() == tracker.estimates()
-    later = [r for r in told.readings if r.t > 40.0]
-    for one in (tracker, again):
-        one.fold(later)
-    assert again.estimates() == tracker.estimates()
+    assert_goes_on_alike(world(62, late_s=1.0).readings, 40.0)
 
 
 @pytest.mark.parametrize(("off_m", "late_s", "anchors"), [(3.0, 0.0, False), (0.0, 2.0, True)])

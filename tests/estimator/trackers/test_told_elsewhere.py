@@ -15,6 +15,7 @@ from estimator.measurements.rssi import Rssi
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, SURE, outside
+from tests.estimator.trackers.restarts import assert_goes_on_alike
 
 SECONDS, SEEDS = 100, (81, 82, 83, 84)
 OUT_M, HALF_M, UP_M, RANGE_SIGMA_M = 14.0, 9.0, 1.0, 0.12
@@ -152,15 +153,7 @@ def test_once_it_is_told_where_it_stands_it_is_believed_there() -> None:
 
 
 def test_pictures_are_the_same_after_a_restart_while_it_is_in_doubt() -> None:
-    told = world(83, 3.0, 3, unit=False)
-    tracker = KirchhoffTracker()
-    tracker.fold([r for r in told.readings if r.t <= 12.0])
-    again = KirchhoffTracker.restore(tracker.snapshot())
-    assert again.estimates() == tracker.estimates()
-    later = [r for r in told.readings if r.t > 12.0]
-    for one in (tracker, again):
-        one.fold(later)
-    assert again.estimates() == tracker.estimates()
+    assert_goes_on_alike(world(83, 3.0, 3, unit=False).readings, 12.0)
 
 
 @pytest.mark.parametrize("unit", [False, True])
