@@ -5,7 +5,7 @@ reported would be too late to be fused.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TypeVar
 
 import msgspec
@@ -84,25 +84,43 @@ class MonotonicClock(msgspec.Struct):
         return earlier(msgspec.structs.replace(record, **parts), self.ahead_s)
 
 
-def on_one_clock(
-    entries: Iterable[tuple[LoggedBatch, Sequence[AnyReading]]], live: bool
-) -> tuple[list[AnyReading], int]:
-    """All readings of a log on one clock, and by how much it is ahead of the server's in the end (s).
+class OneClock:
+    """All entries of a log on one clock, one after the other.
 
     Args:
-        entries: of the log, in order.
         live: the incident goes by the server's clock; the others go by their readings, whatever that does.
+
+    Attributes:
+        newest_t: the newest epoch so far by this clock, of a live incident none later than it came; None:
+            nothing has come.
     """
-    clock, newest_t = MonotonicClock(), None
-    known: list[AnyReading] = []
-    for batch, readings in entries:
-        if live and readings:
-            clock.hear(batch.received, readings, newest_t)
-            came_t = batch.received + clock.ahead_s
-            newest = min(came_t, max(reading.until_t for reading in readings) + clock.ahead_s)
-            newest_t = newest if newest_t is None else max(newest, newest_t)
-        known += clock.of(readings)
-    return known, clock.ahead_s
+
+    def __init__(self, live: bool) -> None:
+        self._live = live
+        self._clock = MonotonicClock()
+        self.newest_t: float | None = None
+
+    @property
+    def ahead_s(self) -> int:
+        """By how much it is ahead of the server's now (s)."""
+        return self._clock.ahead_s
+
+    def take(self, batch: LoggedBatch, readings: Sequence[AnyReading]) -> Sequence[AnyReading]:
+        """The readings of the next entry, by this clock.
+
+        Args:
+            batch: the entry.
+            readings: of it that are used.
+        """
+        if not readings:
+            return readings
+        if self._live:
+            self._clock.hear(batch.received, readings, self.newest_t)
+        newest_t = max(reading.until_t for reading in readings) + self.ahead_s
+        if self._live:
+            newest_t = min(batch.received + self.ahead_s, newest_t)
+        self.newest_t = newest_t if self.newest_t is None else max(newest_t, self.newest_t)
+        return self._clock.of(readings)
 
 
 def earlier(part: Part, by_s: float, times: Sequence[str] = ("t",)) -> Part:

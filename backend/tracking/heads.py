@@ -107,6 +107,20 @@ def heads(engine: sa.Engine, followed: Collection[str]) -> list[Head]:
     return [_head(row) for row in rows if row.id in followed or not _folded(row)]
 
 
+def running(engine: sa.Engine) -> list[Head]:
+    """The live incidents that take telemetry, in order of creation.
+
+    Args:
+        engine: of the log's database.
+
+    Raises:
+        LogUnreadable: the database failed.
+    """
+    taking = _heads.where(incidents.c.clock == "live", incidents.c.state != "closed")
+    with reading(engine) as connection:
+        return [_head(row) for row in connection.execute(taking)]
+
+
 def _folded(row: Any) -> bool:
     if row.last_seq > row.snapshot_seq:
         return False

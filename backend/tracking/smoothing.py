@@ -18,6 +18,7 @@ from backend.tracking.sums_process import (
     Smoothed,
     advice_of_log,
     evidence_of_log,
+    read_ahead,
     relative_from_state,
     relative_of_log,
     smooth_log,
@@ -35,6 +36,10 @@ EXPLAINED = 32
 
 PREPARED_AFTER_S = 10.0
 """Its process is started when a server has begun its other work: whoever asks first does not wait for it."""
+
+AHEAD_EVERY_S = 10.0
+"""So often the logs of running incidents are read on, should somebody ask: what has come since is then folded
+in a tenth of a second."""
 
 SMOOTH_WITHIN_S = 60.0
 EXPLAIN_WITHIN_S = 60.0
@@ -56,12 +61,13 @@ class Smoothing:
     def __init__(self, database_url: str) -> None:
         self._url = database_url
         self._pool: ProcessPoolExecutor | None = None
-        turn = asyncio.Lock()
+        self._turn = turn = asyncio.Lock()
         self._tracks: Kept[Smoothed] = Kept(KEPT, turn)
         self._evidence: Kept[Evidence | None] = Kept(EXPLAINED, turn)
         self._advice: Kept[Advice | None] = Kept(EXPLAINED, turn)
         self._relative: Kept[Relative | None] = Kept(EXPLAINED, turn)
         self._preparing: asyncio.Task[None] | None = None
+        self._reading: asyncio.Task[None] | None = None
 
     def start(self) -> asyncio.Task[None]:
         """Have the process ready before it is asked for: what is returned ends when it is."""
@@ -72,6 +78,17 @@ class Smoothing:
         await asyncio.sleep(PREPARED_AFTER_S)
         with suppress(Unavailable):
             await self._aside(os.getpid)
+        self._reading = asyncio.create_task(self._read_ahead())
+
+    async def _read_ahead(self) -> None:
+        """Have running incidents read and folded before anybody asks, while nobody does."""
+        while True:
+            more = False
+            if not self._turn.locked():
+                async with self._turn:
+                    with suppress(Unavailable):
+                        more = await self._aside(read_ahead, self._url)
+            await asyncio.sleep(0.0 if more else AHEAD_EVERY_S)
 
     async def smoothed(self, head: Head) -> Smoothed:
         """The smoothed tracks of an incident with everything known now.
@@ -166,8 +183,9 @@ class Smoothing:
 
     def close(self) -> None:
         """End the process."""
-        if self._preparing is not None:
-            self._preparing.cancel()
+        for task in (self._preparing, self._reading):
+            if task is not None:
+                task.cancel()
         self._tracks.cancel()
         self._evidence.cancel()
         self._advice.cancel()

@@ -1,26 +1,34 @@
 """What the process for heavy sums does: reads the log and a stored state, and answers in plain values."""
 
-import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import msgspec
+import sqlalchemy as sa
+import structlog
 
 from backend.errors import NotFound
+from backend.log.base import LogUnreadable
 from backend.log.engine import make_engine
 from backend.log.read import SqlLogReader
-from backend.tracking.clock_set_back import earlier, on_one_clock
+from backend.tracking.clock_set_back import OneClock, earlier
 from backend.tracking.fold import IncidentFold, OtherState
-from backend.tracking.heads import Head
-from backend.tracking.log_blocks import Decoded, read_block
+from backend.tracking.heads import Head, running
+from backend.tracking.known_logs import KEPT, KnownLog, KnownLogs, entries
 from estimator import trackers
 from estimator.estimate import Relative, TrackPoint
 from estimator.evidence import Advice, Evidence
 from estimator.measurements import AnyReading
 from estimator.measurements.imu import Imu, told_until
+from estimator.trackers.base import Told
 
 Smoothed = dict[str, list[TrackPoint]]
 
 _decode = msgspec.msgpack.Decoder(Smoothed).decode
+_known = KnownLogs()
+"""Of this process, which does one sum at a time."""
+
+log = structlog.get_logger(__name__)
 
 
 def smooth_log(database_url: str, head: Head) -> bytes:
@@ -36,9 +44,9 @@ def smooth_log(database_url: str, head: Head) -> bytes:
     Raises:
         LogUnreadable: the database failed.
     """
-    readings, ahead_s = _whole_log(database_url, head)
-    smoothed = trackers.smoother(head.tracker, head.settings).smooth(readings)
-    if ahead_s:
+    known = _known_log(database_url, head)
+    smoothed = trackers.smoother(head.tracker, head.settings).smooth(known.heard)
+    if ahead_s := known.ahead_s:
         smoothed = {node: [earlier(point, ahead_s) for point in track] for node, track in smoothed.items()}
     return msgspec.msgpack.encode(smoothed)
 
@@ -66,10 +74,14 @@ def evidence_of_log(database_url: str, head: Head, node: str, t: float | None) -
         NotFound: no reading up to that moment names the node.
         LogUnreadable: the database failed.
     """
-    readings, ahead_s = _whole_log(database_url, head)
-    known = _known_by(readings, math.inf if t is None else t + ahead_s)
+    told: Told
+    if t is None:
+        known = _known_log(database_url, head)
+        told, ahead_s = known.heard, known.ahead_s
+    else:
+        told, ahead_s = _known_by(database_url, head, t)
     try:
-        evidence = trackers.evidence(head.tracker, head.settings, known, node)
+        evidence = trackers.smoother(head.tracker, head.settings).evidence(told, node)
     except KeyError as error:
         raise _not_named(node, t) from error
     return evidence if evidence is None or not ahead_s else _told_earlier(evidence, ahead_s)
@@ -90,31 +102,61 @@ def advice_of_log(database_url: str, head: Head, node: str) -> Advice | None:
         NotFound: no reading names the node.
         LogUnreadable: the database failed.
     """
-    readings, _ = _whole_log(database_url, head)
+    known = _known_log(database_url, head)
     try:
-        return trackers.advice(head.tracker, head.settings, readings, node)
+        return trackers.smoother(head.tracker, head.settings).advice(known.heard, node)
     except KeyError as error:
         raise _not_named(node, None) from error
 
 
-def _known_by(readings: Iterable[AnyReading], t: float) -> list[AnyReading]:
-    """What readings tell of epochs up to `t` (s): of raw samples the first part, of others all or nothing."""
-    parts = (told_until(r, t) if isinstance(r, Imu) else r for r in readings if r.t <= t)
-    return [part for part in parts if part is not None]
+def read_ahead(database_url: str) -> bool:
+    """Read on in the logs of incidents that run, a few entries of each: somebody may ask about one.
+
+    Args:
+        database_url: SQLAlchemy URL of the log.
+
+    Returns:
+        Whether there may be more entries.
+
+    Raises:
+        LogUnreadable: the database failed.
+    """
+    more = False
+    with _engine(database_url) as engine:
+        for head in running(engine)[-KEPT:]:
+            try:
+                more |= _known.read_ahead(SqlLogReader(engine), head, database_url)
+            except LogUnreadable:
+                raise
+            except Exception:
+                # Whoever asks about it is told; the others are not to wait for it.
+                log.exception("an incident cannot be folded ahead", incident=head.incident)
+                _known.give_up(head, database_url)
+    return more
+
+
+def _known_log(database_url: str, head: Head) -> KnownLog:
+    with _engine(database_url) as engine:
+        return _known.up_to(SqlLogReader(engine), head, database_url)
+
+
+def _known_by(database_url: str, head: Head, t: float) -> tuple[list[AnyReading], int]:
+    """What the whole log tells of epochs up to `t` (Unix seconds), and by how much its clock is ahead (s).
+
+    Of raw samples the first part, of other readings all or nothing.
+    """
+    clock, readings = OneClock(head.live), list[AnyReading]()
+    with _engine(database_url) as engine:
+        for entry in entries(SqlLogReader(engine), head):
+            readings += clock.take(*entry)
+    until_t = t + clock.ahead_s
+    parts = (told_until(r, until_t) if isinstance(r, Imu) else r for r in readings if r.t <= until_t)
+    return [part for part in parts if part is not None], clock.ahead_s
 
 
 def _not_named(node: str, t: float | None) -> NotFound:
     when = "yet" if t is None else f"up to t = {t:.3f}"
     return NotFound(f"No reading of this incident has named {node!r} {when}.")
-
-
-def _whole_log(database_url: str, head: Head) -> tuple[list[AnyReading], int]:
-    """All readings on one clock, and by how much it is ahead of the server's in the end (s)."""
-    engine = make_engine(database_url)
-    try:
-        return on_one_clock(_entries(SqlLogReader(engine), head), head.live)
-    finally:
-        engine.dispose()
 
 
 def _told_earlier(evidence: Evidence, by_s: float) -> Evidence:
@@ -128,15 +170,6 @@ def _told_earlier(evidence: Evidence, by_s: float) -> Evidence:
     )
 
 
-def _entries(reader: SqlLogReader, head: Head) -> Iterator[Decoded]:
-    seq = 0
-    while seq < head.last_seq and (block := read_block(reader, head.incident, seq)):
-        for batch, readings in block:
-            if batch.seq <= head.last_seq:
-                yield batch, readings
-        seq = block[-1][0].seq
-
-
 def relative_from_state(database_url: str, head: Head, a: str, b: str) -> Relative | None:
     """Where `b` is relative to `a` after the newest stored state; None where either is undecided.
 
@@ -145,11 +178,8 @@ def relative_from_state(database_url: str, head: Head, a: str, b: str) -> Relati
         OtherState: there is no state yet, or none that can be used: `relative_of_log` tells.
         LogUnreadable: the database failed.
     """
-    engine = make_engine(database_url)
-    try:
+    with _engine(database_url) as engine:
         snapshot = SqlLogReader(engine).snapshot(head.incident)
-    finally:
-        engine.dispose()
     if snapshot is None:
         raise OtherState("no state is stored yet")
     return _relative(IncidentFold.restore(snapshot.state, head.tracker, head.settings, head.live), a, b)
@@ -169,13 +199,10 @@ def relative_of_log(database_url: str, head: Head, a: str, b: str) -> Relative |
         LogUnreadable: the database failed.
     """
     fold = IncidentFold(head.tracker, head.settings, head.live)
-    engine = make_engine(database_url)
-    try:
-        for batch, readings in _entries(SqlLogReader(engine), head):
+    with _engine(database_url) as engine:
+        for batch, readings in entries(SqlLogReader(engine), head):
             for _ in fold.fold(batch, readings):
                 pass
-    finally:
-        engine.dispose()
     return _relative(fold, a, b)
 
 
@@ -184,3 +211,12 @@ def _relative(fold: IncidentFold, a: str, b: str) -> Relative | None:
         return fold.relative(a, b)
     except KeyError as error:
         raise NotFound(f"There is no node {error.args[0]!r} in this incident.") from error
+
+
+@contextmanager
+def _engine(database_url: str) -> Iterator[sa.Engine]:
+    engine = make_engine(database_url)
+    try:
+        yield engine
+    finally:
+        engine.dispose()

@@ -1,22 +1,13 @@
-"""The whole incident solved with everything known: once through by the filter, then all keyframes at once.
-
-The first pass decides what is fused and where to start; then all keyframes are solved together.
-"""
+"""The whole incident solved with everything known: all keyframes at once, from where the first pass got."""
 
 import math
-from bisect import bisect_left
 from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.fusion.canonical_order import UNTIL_T
 from estimator.fusion.entering.beginnings import decide
-from estimator.fusion.holding import flush
-from estimator.fusion.memory.ledger import Ledger
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.tick import fold_tick
 from estimator.graph.robust import mixture_cost
-from estimator.inertial.samples import AnyFolded
 from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
 from estimator.smoothing.changes.branch import branch, reunite
 from estimator.smoothing.changes.moved_nodes import MovedNode, moved_nodes
@@ -34,7 +25,6 @@ from estimator.smoothing.problem.newton import RESTING, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.told_causes import ask
-from estimator.smoothing.window import solve_for_headings, solve_if_due
 from estimator.smoothing.window_extent import spacing_s as usual_s
 
 SLACKS_M = (3.0, 1.0, 0.3, 0.1)
@@ -42,41 +32,12 @@ LEARNING = (1.5, 1.0, 0.5)
 """How far the logarithms of noise variances may move, solution by solution."""
 LEARNING_RESTING = 1.0
 """What a solution may leave of its log likelihood that is only learned from."""
-TICK_S = 2.0
-"""The first pass only finds where to start: its ticks are longer than the online tracker's. In still longer
-ones a node moves too far for the noise that is learned on the way."""
-RARER = 48.0
-"""The first pass only finds where to start: its window is solved this many times more rarely."""
 DELAYS = 3
 """So often is it asked at most which radios are off: each answer may hide another one."""
 MOVES = 20
 """So many nodes at most are found elsewhere at a time: each asks for another solution."""
 LARGEST = 60_000_000
 """Numbers that the chain may hold: beyond it keyframes are set farther apart."""
-
-
-def first_pass(
-    readings: Sequence[AnyFolded], origin_wgs84: tuple[float, float, float] | None = None
-) -> FusionState:
-    """Fold the readings once, in ticks of `TICK_S`.
-
-    Args:
-        readings: in canonical order.
-        origin_wgs84: latitude (°), longitude (°), height (m) of the local origin, if known.
-    """
-    state = FusionState(origin_wgs84)
-    state.ledger = Ledger(complete=True)
-    start = 0
-    while start < len(readings):
-        until_t = (math.floor(readings[start].until_t / TICK_S) + 1) * TICK_S
-        end = bisect_left(readings, until_t, start, key=UNTIL_T)
-        fold_tick(state, until_t, readings[start:end])
-        solve_if_due(state, until_t, RARER)
-        start = end
-    flush(state)
-    solve_for_headings(state)
-    state.keep_poses()
-    return state
 
 
 def solve_whole(state: FusionState) -> tuple[Problem, Solution, list[Mode]]:

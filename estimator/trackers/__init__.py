@@ -1,9 +1,5 @@
 """Trackers: the interface in `base`, and one file an estimator; here they are found by name."""
 
-from collections.abc import Sequence
-
-from estimator.evidence import Advice, Evidence
-from estimator.measurements import AnyReading
 from estimator.trackers.base import Smoother, Tracker, TrackerSettings
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
@@ -43,23 +39,3 @@ def smoother(name: str, settings: TrackerSettings) -> Smoother:
         KeyError: there is none of that name.
     """
     return SMOOTHERS[name](settings)
-
-
-def evidence(
-    name: str, settings: TrackerSettings, readings: Sequence[AnyReading], node: str
-) -> Evidence | None:
-    """What holds a node's newest fix after readings; None where its position is not decided.
-
-    Raises:
-        KeyError: there is no tracker of that name, or no such node.
-    """
-    return SMOOTHERS[name](settings).evidence(readings, node)
-
-
-def advice(name: str, settings: TrackerSettings, readings: Sequence[AnyReading], node: str) -> Advice | None:
-    """What would help a node most after readings; None where its position is not decided.
-
-    Raises:
-        KeyError: there is no tracker of that name, or no such node.
-    """
-    return SMOOTHERS[name](settings).advice(readings, node)

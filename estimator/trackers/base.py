@@ -7,7 +7,9 @@ from typing import Protocol, Self
 import msgspec
 
 from estimator.estimate import NodeEstimate, Notice, Relative, TrackPoint
+from estimator.evidence import Advice, Evidence
 from estimator.measurements import AnyReading
+from estimator.trackers.heard import Heard
 
 
 class TrackerSettings(msgspec.Struct, frozen=True, kw_only=True):
@@ -69,8 +71,26 @@ class Tracker(Protocol):
         """
 
 
+Told = Sequence[AnyReading] | Heard
+"""All readings of an incident, in any order, or what keeps them and has folded the older ones."""
+
+
 class Smoother(Protocol):
     """Solves a whole incident with everything known."""
 
-    def smooth(self, readings: Sequence[AnyReading]) -> dict[str, list[TrackPoint]]:
+    def smooth(self, told: Told) -> dict[str, list[TrackPoint]]:
         """Every node's track, a point at each whole second from its first to its last reading."""
+
+    def evidence(self, told: Told, node: str) -> Evidence | None:
+        """What holds a node's newest fix; None where its position is not decided.
+
+        Raises:
+            KeyError: there is no such node.
+        """
+
+    def advice(self, told: Told, node: str) -> Advice | None:
+        """What would make a node's newest position surer; None where it is not decided.
+
+        Raises:
+            KeyError: there is no such node.
+        """

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from backend.live import record
 from backend.live.record import RecordNode
 from backend.log.base import LoggedBatch, RecordedFrame
-from backend.tracking.clock_set_back import MonotonicClock, on_one_clock
+from backend.tracking.clock_set_back import MonotonicClock, OneClock
 from backend.tracking.fold import IncidentFold
 from estimator.measurements import Alarm, AnyReading, Displacement, Node, Status
 from estimator.trackers.base import TrackerSettings
@@ -130,15 +130,30 @@ def test_a_call_for_help_alone_puts_no_clock_back_and_is_heard() -> None:
 
 def test_a_whole_log_is_read_on_one_clock() -> None:
     ahead = {0: HOUR_S, 20: 0.0}
-    readings, ahead_s = on_one_clock(walked(40, ahead, ahead), live=True)
-    times = [reading.until_t - ahead_s for reading in readings]
+    clock = OneClock(live=True)
+    readings = [reading for entry in walked(40, ahead, ahead) for reading in clock.take(*entry)]
+    times = [reading.until_t - clock.ahead_s for reading in readings]
     assert times == sorted(times)
     assert times[-1] == START_T + 39.0
     assert times[0] == pytest.approx(START_T - 1.0, abs=2.0)
-    assert on_one_clock(walked(40, ahead, ahead), live=False) == (
-        [reading for _, some in walked(40, ahead, ahead) for reading in some],
-        0,
-    )
+    assert clock.newest_t == START_T + 39.0 + clock.ahead_s
+
+
+def test_a_recorded_log_goes_by_its_readings_whatever_the_clock_does() -> None:
+    ahead = {0: HOUR_S, 20: 0.0}
+    clock = OneClock(live=False)
+    for batch, readings in walked(40, ahead, ahead):
+        assert clock.take(batch, readings) == readings
+    assert clock.ahead_s == 0
+    assert clock.newest_t == START_T + 19.0 + HOUR_S
+
+
+def test_no_epoch_of_a_live_incident_is_newer_than_it_came() -> None:
+    clock = OneClock(live=True)
+    assert clock.newest_t is None
+    tomorrow = Displacement(t=START_T + 24.0 * HOUR_S, node="ff1", delta_m=(1.0, 0.0, 0.0))
+    clock.take(replace(entry(1), received=START_T), [tomorrow])
+    assert clock.newest_t == START_T
 
 
 def test_a_clock_that_goes_on_is_never_put_back_by_less_than_clocks_may_be_wrong() -> None:

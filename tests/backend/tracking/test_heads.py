@@ -10,7 +10,7 @@ from backend.log.base import Snapshot
 from backend.log.derived import SqlDerivedWriter
 from backend.log.engine import writing
 from backend.log.incidents import IncidentStore
-from backend.tracking.heads import head_of, heads
+from backend.tracking.heads import head_of, heads, running
 from estimator.measurements import Status
 from tests.backend.tracking.conftest import Write
 
@@ -63,3 +63,10 @@ def test_settings_that_were_changed_back_are_folded_all_the_same(
     store.change(folded, {"settings": {"tracker": "paper-a"}})
     changed = store.change(folded, {"settings": {"tracker": "kirchhoff"}})
     assert heads(engine, []) == [head_of(changed)]
+
+
+def test_live_incidents_run_until_they_are_closed(engine: sa.Engine, store: IncidentStore) -> None:
+    store.create("looked at again", "recorded")
+    closed, first, second = (store.create(name, "live") for name in ("over", "north", "south"))
+    store.change(closed.id, {"state": "closed"})
+    assert running(engine) == [head_of(first), head_of(second)]

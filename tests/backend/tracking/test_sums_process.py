@@ -1,7 +1,7 @@
 """What is read of the log and of stored states for sums aside."""
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
 import pytest
@@ -27,10 +27,11 @@ from backend.tracking.sums_process import (
     smoothed_of,
 )
 from estimator import trackers
-from estimator.measurements import AnyReading, Position
+from estimator.measurements import Position
 from estimator.measurements.imu import Imu
 from estimator.trackers import kirchhoff
-from estimator.trackers.base import TrackerSettings
+from estimator.trackers.base import Told, TrackerSettings
+from estimator.trackers.heard import Heard
 from tests.backend.tracking.conftest import Write, walk
 
 HOUR_S = 3600.0
@@ -40,27 +41,33 @@ T = TypeVar("T")
 
 
 class Asked:
-    """Stands in for the estimator and keeps what it was given."""
+    """Stands in for the smoother and keeps what it was given."""
 
     def __init__(self) -> None:
         self.epochs: list[float] = []
         self.until: list[float] = []
+        self.told = 0
 
-    def __call__(
-        self, tracker: str, settings: TrackerSettings, readings: Sequence[AnyReading], node: str
-    ) -> None:
-        assert (tracker, settings) == ("kirchhoff", TrackerSettings())
-        self.epochs = [reading.t for reading in readings]
-        self.until = [reading.until_t for reading in readings]
+    def evidence(self, told: Told, node: str) -> None:
+        self.told = len(told)
+        if not isinstance(told, Heard):
+            self.epochs = [reading.t for reading in told]
+            self.until = [reading.until_t for reading in told]
         if node != "ff1":
             raise KeyError(node)
+
+    advice = evidence
 
 
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> Asked:
     stand_in = Asked()
-    for name in ("evidence", "advice"):
-        monkeypatch.setattr(trackers, name, stand_in, raising=False)
+
+    def smoother(tracker: str, settings: TrackerSettings) -> Asked:
+        assert (tracker, settings) == ("kirchhoff", TrackerSettings())
+        return stand_in
+
+    monkeypatch.setattr(trackers, "smoother", smoother)
     return stand_in
 
 
@@ -110,10 +117,13 @@ def test_after_the_servers_clock_was_put_back_all_is_told_by_the_clock_that_is_r
 
 
 def test_without_a_moment_the_whole_log_counts(sqlite_url: str, head: Head, asked: Asked) -> None:
-    assert evidence_of_log(sqlite_url, head, "ff1", None) is None
-    assert asked.epochs == [10.0, 12.0, 11.0, 9.0, 13.0]
-    assert advice_of_log(sqlite_url, head, "ff1") is None
-    assert asked.epochs == [10.0, 12.0, 11.0, 9.0, 13.0]
+    for ask in (
+        lambda: evidence_of_log(sqlite_url, head, "ff1", None),
+        lambda: advice_of_log(sqlite_url, head, "ff1"),
+    ):
+        asked.told = 0
+        assert ask() is None
+        assert asked.told == 5
 
 
 def test_of_a_moment_epochs_up_to_it_count_whenever_they_came(
@@ -137,6 +147,8 @@ def test_of_a_moment_in_the_middle_of_raw_samples_their_first_part_counts(
 def test_entries_after_the_head_are_left_out(sqlite_url: str, head: Head, write: Write, asked: Asked) -> None:
     write(head.incident, [[fix(14.0)]])
     evidence_of_log(sqlite_url, head, "ff1", None)
+    assert asked.told == 5
+    evidence_of_log(sqlite_url, head, "ff1", 14.0)
     assert max(asked.epochs) == 13.0
 
 
@@ -145,7 +157,7 @@ def test_a_node_that_nothing_has_named_is_not_found(sqlite_url: str, head: Head,
         evidence_of_log(sqlite_url, head, "ff9", 11.0)
     with pytest.raises(NotFound, match="has named 'ff9' yet"):
         advice_of_log(sqlite_url, head, "ff9")
-    assert asked.epochs
+    assert asked.told
 
 
 def test_where_the_stored_state_is_refused_the_log_tells_the_relative_position(

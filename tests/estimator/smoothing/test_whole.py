@@ -10,8 +10,7 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.whole import first_pass, solve_whole, sort_by_walk
-from estimator.trackers.batch import in_order
+from estimator.smoothing.whole import solve_whole, sort_by_walk
 from tests.estimator.smoothing.windows import entered, fused, problem_of
 from tests.estimator.walks import two_responders
 
@@ -54,7 +53,7 @@ def searched(factor: float, seed: int) -> list[AnyReading]:
 def test_what_is_assumed_of_walls_makes_no_unit_better_than_it_is(factor: float) -> None:
     learned = []
     for seed in range(4):
-        problem, *_ = solve_whole(first_pass(in_order(searched(factor, seed))))
+        problem, *_ = solve_whole(fused(searched(factor, seed)))
         learned.append(problem.layout.state.nodes["ff1"].walk_factors[0])
     assert float(np.exp(np.mean(np.log(learned)))) == pytest.approx(factor, rel=0.35)
 

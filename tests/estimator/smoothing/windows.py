@@ -17,8 +17,8 @@ from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
-from estimator.smoothing.whole import first_pass
 from estimator.smoothing.window_extent import spacing_s
+from estimator.trackers.heard import Heard
 
 
 def entered(east_m: float = 0.0, north_m: float = 0.0, node: str = "ff1") -> Node:
@@ -28,8 +28,11 @@ def entered(east_m: float = 0.0, north_m: float = 0.0, node: str = "ff1") -> Nod
 
 
 def fused(readings: Sequence[AnyReading]) -> FusionState:
-    """What the online pass leaves of an incident."""
-    return first_pass(sorted(readings, key=lambda r: r.t))
+    """What the first pass leaves of an incident."""
+    heard = Heard(lag_s=0.0)
+    heard.hear(readings)
+    state, _ = heard.ended()
+    return state
 
 
 def problem_of(state: FusionState, since_t: float | None = None, prior: Prior | None = None) -> Problem:

@@ -14,9 +14,9 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.rssi import Rssi
 from estimator.simulate import Scenario, scenario
-from estimator.smoothing.whole import first_pass
-from estimator.trackers.batch import BatchSmoother, in_order
+from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.smoothing.windows import fused
 
 REACH_M = 25.0
 """Of all radios in paper A's scenario."""
@@ -33,7 +33,7 @@ def readings(name: str = "paper-a") -> list[AnyReading]:
 
 
 def folded(told: Sequence[AnyReading]) -> FusionState:
-    return first_pass(in_order(told), None)
+    return fused(told)
 
 
 def crossings(state: FusionState) -> list[tuple[float, str]]:

@@ -11,12 +11,11 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.whole import first_pass
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, outside
-from tests.estimator.smoothing.windows import entered
+from tests.estimator.smoothing.windows import entered, fused
 
 SECONDS, LAP_S, RADIUS_M = 240, 80, 15.0
 BEACONS = {"b1": (10.0, 25.0), "b2": (-22.0, 10.0), "b3": (5.0, -5.0)}
@@ -52,7 +51,7 @@ def inside(points: list[TrackPoint]) -> float:
 
 def test_it_is_taken_for_calibrated_and_is_not() -> None:
     """Or the others would show nothing."""
-    assert 0.05 < first_pass(incident()).calibrations["uwb"].uncalibrated < TRUSTED
+    assert 0.05 < fused(incident()).calibrations["uwb"].uncalibrated < TRUSTED
 
 
 def test_the_smoothed_view_holds_what_a_map_that_is_too_large_shows_elsewhere() -> None:

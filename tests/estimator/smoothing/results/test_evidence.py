@@ -12,7 +12,7 @@ from estimator.measurements.retire import Retire
 from estimator.trackers.base import TrackerSettings
 from tests.estimator.walks import behind_a_wall, two_responders
 
-SETTINGS = TrackerSettings()
+SMOOTHER = trackers.smoother("kirchhoff", TrackerSettings())
 
 
 def walk() -> list[AnyReading]:
@@ -20,7 +20,7 @@ def walk() -> list[AnyReading]:
 
 
 def test_the_shares_of_all_currents_add_up_to_one() -> None:
-    found = trackers.evidence("kirchhoff", SETTINGS, walk(), "ff1")
+    found = SMOOTHER.evidence(walk(), "ff1")
     assert found is not None
     assert sum(m.share for m in found.held) + found.rest == pytest.approx(1.0, abs=1e-9)
     assert all(m.share >= 0.0 for m in found.held)
@@ -28,10 +28,10 @@ def test_the_shares_of_all_currents_add_up_to_one() -> None:
 
 
 def test_a_sharp_fix_now_holds_the_position_alone() -> None:
-    before = trackers.evidence("kirchhoff", SETTINGS, walk(), "ff1")
+    before = SMOOTHER.evidence(walk(), "ff1")
     assert before is not None
     fix = Position(t=35.0, node="ff1", position_m=before.position_m, sigma_m=(0.02, 0.02, 0.02))
-    found = trackers.evidence("kirchhoff", SETTINGS, [*walk(), fix], "ff1")
+    found = SMOOTHER.evidence([*walk(), fix], "ff1")
     assert found is not None
     assert found.held[0].kind == "fix"
     assert found.held[0].share > 0.5
@@ -39,7 +39,7 @@ def test_a_sharp_fix_now_holds_the_position_alone() -> None:
 
 def test_an_absurd_range_is_listed_as_rejected() -> None:
     absurd = Range(t=34.5, a="ff1", b="base", range_m=90.0, technology="uwb")
-    found = trackers.evidence("kirchhoff", SETTINGS, [*walk(), absurd], "ff1")
+    found = SMOOTHER.evidence([*walk(), absurd], "ff1")
     assert found is not None
     assert [m.value for m in found.rejected] == [90.0]
     assert found.rejected[0].weight < 0.01
@@ -47,9 +47,9 @@ def test_an_absurd_range_is_listed_as_rejected() -> None:
 
 def test_a_range_through_a_wall_is_too_long_by_what_its_radio_said() -> None:
     """The smoothed view takes off what it thinks that walls add; evidence keeps to what was measured."""
-    found = trackers.evidence("kirchhoff", SETTINGS, behind_a_wall(), "ff2")
+    found = SMOOTHER.evidence(behind_a_wall(), "ff2")
     assert found is not None
-    ways = trackers.smoother("kirchhoff", SETTINGS).smooth(behind_a_wall())
+    ways = SMOOTHER.smooth(behind_a_wall())
     beacon = ways["beacon"][-1].position_m
     walled = [m for m in found.held if m.kind == "range" and m.b == "beacon"]
     assert max(m.residual for m in walled) > 2.0
@@ -60,8 +60,8 @@ def test_a_range_through_a_wall_is_too_long_by_what_its_radio_said() -> None:
 
 @pytest.mark.parametrize("node", ["ff1", "beacon", "b10"])
 def test_who_has_left_is_held_by_what_held_him(node: str) -> None:
-    before = trackers.evidence("kirchhoff", SETTINGS, walk(), node)
-    after = trackers.evidence("kirchhoff", SETTINGS, [*walk(), Retire(t=36.0, node=node)], node)
+    before = SMOOTHER.evidence(walk(), node)
+    after = SMOOTHER.evidence([*walk(), Retire(t=36.0, node=node)], node)
     assert before is not None
     assert after is not None
     assert after.position_m == pytest.approx(before.position_m)
@@ -70,13 +70,13 @@ def test_who_has_left_is_held_by_what_held_him(node: str) -> None:
 
 def test_an_unknown_node_has_no_evidence() -> None:
     with pytest.raises(KeyError):
-        trackers.evidence("kirchhoff", SETTINGS, walk(), "nobody")
+        SMOOTHER.evidence(walk(), "nobody")
     with pytest.raises(KeyError):
-        trackers.advice("kirchhoff", SETTINGS, walk(), "nobody")
+        SMOOTHER.advice(walk(), "nobody")
 
 
 def test_advice_names_the_best_first_and_never_makes_worse() -> None:
-    found = trackers.advice("kirchhoff", SETTINGS, walk(), "ff2")
+    found = SMOOTHER.advice(walk(), "ff2")
     assert found is not None
     gains = [s.gain for s in found.suggestions]
     assert gains
@@ -86,5 +86,5 @@ def test_advice_names_the_best_first_and_never_makes_worse() -> None:
 
 
 def test_who_is_known_exactly_needs_neither() -> None:
-    assert trackers.evidence("kirchhoff", SETTINGS, walk(), "base") is None
-    assert trackers.advice("kirchhoff", SETTINGS, walk(), "base") is None
+    assert SMOOTHER.evidence(walk(), "base") is None
+    assert SMOOTHER.advice(walk(), "base") is None

@@ -11,11 +11,12 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
 from estimator.smoothing.results.heading_arcs import arc_excess_m2, widen_by_arcs
-from estimator.smoothing.whole import first_pass, solve_whole
+from estimator.smoothing.whole import solve_whole
 from estimator.trackers.base import TrackerSettings
-from estimator.trackers.batch import BatchSmoother, in_order
+from estimator.trackers.batch import BatchSmoother
 from tests.estimator.ellipses import INSIDE, outside
 from tests.estimator.fusion.motion.test_heading_arcs import WAY_M, ahead
+from tests.estimator.smoothing.windows import fused
 
 
 def incident(heading_sigma_rad: float) -> list[AnyReading]:
@@ -51,7 +52,7 @@ def ranged_from_above() -> list[AnyReading]:
 @pytest.mark.parametrize("readings", [incident(math.pi), incident(0.3), ranged_from_above()])
 def test_places_and_the_next_ones_are_told_of_one_distribution(readings: list[AnyReading]) -> None:
     """So whatever lies between two keyframes has a covariance."""
-    problem, solved, _ = solve_whole(first_pass(in_order(readings), None))
+    problem, solved, _ = solve_whole(fused(readings))
     layout = problem.layout
     solved.chain.solve()
     found = solved.chain.covariances()

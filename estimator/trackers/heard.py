@@ -1,0 +1,113 @@
+"""What an incident has told: folded ahead as far as hardly anything can still come late.
+
+Who asks about a whole incident, while it runs, then waits for its end to be folded only.
+"""
+
+import math
+from array import array
+from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
+
+from estimator.fusion.canonical_order import UNTIL_T, place_of
+from estimator.fusion.holding import names_of
+from estimator.fusion.memory.state import FusionState
+from estimator.inertial.samples import AnyFolded, in_pieces
+from estimator.measurements import AnyReading
+from estimator.measurements.imu import Imu
+from estimator.smoothing.first_pass import TICK_S, FirstPass, end_of_tick
+from estimator.smoothing.results.tracks import Lifetimes
+
+LONGEST_S = 86_400.0
+"""No incident lasts longer: a reading farther than a day from the others has a wrong epoch."""
+
+
+class Heard:
+    """Readings of one incident, the older ones folded already: what they make is as if all had come at once.
+
+    Args:
+        lag_s: they may be late by so much (s).
+        origin_wgs84: latitude (°), longitude (°), height (m) of the local origin, if known.
+    """
+
+    def __init__(self, lag_s: float, origin_wgs84: tuple[float, float, float] | None = None) -> None:
+        self._lag_s = lag_s
+        self._pass = FirstPass(origin_wgs84)
+        self._until_t = -math.inf
+        self._epochs = array("d")
+        self._lifetimes: dict[str, tuple[float, float]] = {}
+        self._waiting: list[AnyFolded] = []
+
+    def __len__(self) -> int:
+        """How many have been heard; raw samples count by pieces."""
+        return len(self._epochs) + len(self._waiting)
+
+    def can_hear(self, readings: Sequence[AnyReading]) -> bool:
+        """Whether they all tell of what is not folded yet. Where not, all is to be heard anew, in order."""
+        return all(_begins(reading) >= self._until_t for reading in readings)
+
+    def hear(self, readings: Sequence[AnyReading]) -> None:
+        """Take readings, in any order of epochs.
+
+        Args:
+            readings: they are, all such as `can_hear` tells.
+        """
+        self._waiting += in_pieces(readings)
+
+    def fold_ahead(self, newest_t: float) -> None:
+        """Fold what is older than the lag.
+
+        Args:
+            newest_t: an epoch that is past, by a clock that can be trusted (s).
+        """
+        until_t = end_of_tick(newest_t - self._lag_s) - TICK_S
+        if until_t <= self._until_t:
+            return
+        self._waiting.sort(key=place_of)
+        ready = self._waiting[: bisect_left(self._waiting, until_t, key=UNTIL_T)]
+        del self._waiting[: len(ready)]
+        self._pass.fold(ready)
+        self._epochs.extend(map(UNTIL_T, ready))
+        _extend(self._lifetimes, ready)
+        self._until_t = until_t
+
+    def misdated(self) -> bool:
+        """Whether something was folded whose epoch turns out to be wrong: all is to be heard anew."""
+        since_t, until_t = self._day()
+        return bool(self._epochs) and not since_t < self._epochs[0] <= self._epochs[-1] < until_t
+
+    def ended(self) -> tuple[FusionState, Lifetimes]:
+        """What is known where nothing more comes: the state after the first pass, and who was heard when.
+
+        Both may be changed: this goes on without what is not folded yet. What is folded is not `misdated`.
+        """
+        since_t, until_t = self._day()
+        rest = sorted(self._waiting, key=place_of)
+        rest = rest[bisect_right(rest, since_t, key=UNTIL_T) : bisect_left(rest, until_t, key=UNTIL_T)]
+        lifetimes = dict(self._lifetimes)
+        _extend(lifetimes, rest)
+        return self._pass.ended(rest), lifetimes
+
+    def _day(self) -> tuple[float, float]:
+        """Epochs between which the incident lies (s): a day to both sides of its middle reading's."""
+        middle = len(self) // 2
+        if middle < len(self._epochs):
+            middle_t = self._epochs[middle]
+        elif self._waiting:
+            middle_t = sorted(map(UNTIL_T, self._waiting))[middle - len(self._epochs)]
+        else:
+            middle_t = 0.0
+        return middle_t - LONGEST_S, middle_t + LONGEST_S
+
+
+def _begins(reading: AnyReading) -> float:
+    """From when on a reading is folded; raw samples piece by piece."""
+    return reading.t if isinstance(reading, Imu) else reading.until_t
+
+
+def _extend(lifetimes: dict[str, tuple[float, float]], readings: Sequence[AnyFolded]) -> None:
+    """Take note of who was heard in readings, which come in order of epoch."""
+    for reading in readings:
+        since_t, until_t = reading.t, reading.until_t
+        for name in names_of(reading):
+            first_t, _ = lifetimes.get(name, (since_t, until_t))
+            lifetimes[name] = (min(first_t, since_t), until_t)
