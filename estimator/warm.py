@@ -140,6 +140,7 @@ def _warm_chain() -> None:
     place = np.zeros((1, 3))
     end = Table(slab, np.zeros((1, STATES), dtype=np.int64), place, place, place, one)
     place_ends(end, x)
+    triple = np.zeros((1, 3), dtype=np.int64)
     pair, no = np.zeros((1, 2), dtype=np.int64), np.zeros(1, dtype=np.bool_)
     way = Way(0.0, between, (1.0, 1.0))
     way.between(one, one)
@@ -149,7 +150,9 @@ def _warm_chain() -> None:
     heard, read, laid = (np.zeros((1, len(COLUMNS[name]))) for name in ("pairs", "singles", "drops"))
     found = window_readings(LedgerRows(heard, read, laid), 0.0, ground, pair, no, slab)
     rows = found.rows
-    readings = Readings(slab, one, one, pair, end, end, slab, one, pair, one, end, end, end, slab)
+    readings = Readings(
+        slab, one, one, triple, np.zeros((1, 2)), end, end, slab, one, pair, one, end, end, end, slab
+    )
     residuals(readings, x)
     jacobian = np.zeros((5, ANY))
     jacobians(readings, x, jacobian)

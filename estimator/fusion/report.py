@@ -7,6 +7,7 @@ from estimator.estimate import NodeEstimate, Relative
 from estimator.fusion import physics
 from estimator.fusion.entering.introduce import tuple_of, upper_triangle
 from estimator.fusion.entering.separated_unit import apart_m2, elsewhere_m2
+from estimator.fusion.entering.technologies import BODY, technology_variable
 from estimator.fusion.images import doubt_between_m2
 from estimator.fusion.learned.calibration import doubt
 from estimator.fusion.learned.delays import Suspicion
@@ -40,9 +41,11 @@ def covariance_of(state: FusionState) -> Array:
     for name, receiver in state.receivers.items():
         told += [(graph.starts[Variable("receiver", name)], *doubt) for doubt in receiver.doubts]
     elsewhere = [(_along(found, start, own), moment) for start, own, moment in told]
-    for name, known in state.calibrations.items():
-        row = graph.starts.get(Variable("range", name))
-        if row is not None:
+    judged = [(Variable("range", name), 0, known) for name, known in state.calibrations.items()]
+    judged += [(technology_variable(name), BODY, known) for name, known in state.bodies.items()]
+    for variable, number, known in judged:
+        if variable in graph.starts:
+            row = graph.starts[variable] + number
             variance = float(found[row, row])
             factor = doubt(known, float(graph.reference[row]), variance)
             if factor * variance > NOTHING:

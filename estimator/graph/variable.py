@@ -4,8 +4,9 @@ from typing import Literal, NamedTuple
 
 VariableKind = Literal["position", "velocity", "unit", "range", "rssi", "altimeter", "receiver"]
 """position: east, north, up (m); velocity: the same (m/s); unit: heading error ψ (rad), gyro bias β (rad/s)
-and step scale error s − 1 of a PDR unit; range: scale error and bias (m) of a ranging technology; rssi: power
-at 1 m (dBm) and path-loss exponent; altimeter: what one is off by now (m); receiver: what fixes of one who
+and step scale error s − 1 of a PDR unit; range: scale error and bias (m) of a ranging technology, and what
+bearers' bodies make it longer by (m); rssi: power at 1 m (dBm), path-loss exponent, and what bodies take
+(dB); altimeter: what one is off by now (m); receiver: what fixes of one who
 flies are off by, east, north, up (m), and how late they are (s)."""
 
 TECHNOLOGIES = frozenset({"range", "rssi", "altimeter", "receiver"})
@@ -14,8 +15,8 @@ DIMENSION: dict[VariableKind, int] = {
     "position": 3,
     "velocity": 3,
     "unit": 3,
-    "range": 2,
-    "rssi": 2,
+    "range": 3,
+    "rssi": 3,
     "altimeter": 1,
     "receiver": 4,
 }

@@ -44,6 +44,10 @@ class ChosenMode(NamedTuple):
     up_sigma_m: float
 
 
+LAW = 2
+"""Numbers of a technology that tell how its readings go with the distance."""
+
+
 def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None:
     """Try undecided nodes that have been seen anew, and begin those whose position is decided.
 
@@ -79,9 +83,10 @@ def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None
         states = technology_states(state, owner) if ranged else path_loss_states(state, owner)
         if covariance is None or len(covariance) != state.graph.size:
             covariance = state.graph.covariance()
-        rows = state.graph.rows(states)
-        extra = state.graph.value(states).copy()
-        chosen = _choose(state, node, sightings, extra, covariance[rows, rows], late)
+        # What bodies do is little against how unsure a place is that is to be decided.
+        own = slice(state.graph.starts[states], state.graph.starts[states] + LAW)
+        extra, extra_covariance = state.graph.value(states)[:LAW].copy(), covariance[own, own]
+        chosen = _choose(state, node, sightings, extra, extra_covariance, late)
         if chosen is not None and (chosen.sure or (late and _is_place(sightings, chosen.mode))):
             _begin(state, node, sightings, chosen, since_t)
             covariance = None

@@ -1,4 +1,4 @@
-"""The blocks of technologies in the Kirchhoff matrix: scale and bias of ranges, path loss of powers."""
+"""The blocks of technologies in the Kirchhoff matrix: scale and bias of ranges, path loss, bodies."""
 
 from estimator.fusion import physics
 from estimator.fusion.learned import reach
@@ -7,7 +7,9 @@ from estimator.fusion.memory.ledger import UNTOLD_POWER
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.variable import Variable
 
-Numbers = tuple[float, float]
+Numbers = tuple[float, float, float]
+BODY = 2
+"""Which number of a technology tells what bearers' bodies do to its readings."""
 SENT = "sent"
 """Owner of the path-loss states of radios that tell the power they send with; "" for those that do not."""
 TOLD_POWER = UNTOLD_POWER + SENT
@@ -17,21 +19,31 @@ REACH = UNTOLD_POWER + "reach"
 
 
 def technology_states(state: FusionState, technology: str) -> Variable:
-    """The block of scale and bias of a ranging technology, added when first used."""
+    """The block of scale, bias and bodies of a ranging technology, added when first used."""
     states = Variable("range", technology)
     if states not in state.graph:
-        state.graph.add_node(
-            states, (0.0, 0.0), (state.range_scale_sigma(technology), bias_sigma_m(technology))
-        )
+        state.graph.add_node(states, (0.0, 0.0, 0.0), ranging_sigma(state, technology))
     return states
+
+
+def ranging_sigma(state: FusionState, technology: str) -> Numbers:
+    """Standard deviations of scale, bias and bodies of a ranging technology beforehand."""
+    bodies = state.body_sigma(technology, powers=False)
+    return state.range_scale_sigma(technology), bias_sigma_m(technology), bodies
 
 
 def path_loss_states(state: FusionState, technology: str) -> Variable:
-    """The block of P0 and n of radios that tell the power they send with, or of the others."""
+    """The block of P0, n and bodies of radios that tell the power they send with, or of the others."""
     states = path_loss_variable(technology)
     if states not in state.graph:
-        state.graph.add_node(states, *path_loss_prior(technology))
+        state.graph.add_node(states, *path_loss_prior(state, technology))
     return states
+
+
+def technology_variable(technology: str) -> Variable:
+    """The key of the block of a technology, of ranges or of powers."""
+    powers = technology.startswith(UNTOLD_POWER)
+    return path_loss_variable(technology) if powers else Variable("range", technology)
 
 
 def path_loss_variable(technology: str) -> Variable:
@@ -39,11 +51,11 @@ def path_loss_variable(technology: str) -> Variable:
     return Variable("rssi", technology[len(UNTOLD_POWER) :])
 
 
-def path_loss_prior(technology: str) -> tuple[Numbers, Numbers]:
-    """P0 and n beforehand, and their standard deviations."""
+def path_loss_prior(state: FusionState, technology: str) -> tuple[Numbers, Numbers]:
+    """P0, n and bodies beforehand, and their standard deviations."""
+    bodies = state.body_sigma(technology, powers=True)
     if technology == REACH:
-        return (reach.REACH_DB, reach.EXPONENT), (reach.REACH_SIGMA_DB, reach.EXPONENT_SIGMA)
-    return (
-        (physics.RSSI_POWER_DBM, physics.RSSI_EXPONENT),
-        (physics.RSSI_POWER_SIGMA_DB, physics.RSSI_EXPONENT_SIGMA),
-    )
+        means = reach.REACH_DB, reach.EXPONENT, 0.0
+        return means, (reach.REACH_SIGMA_DB, reach.EXPONENT_SIGMA, bodies)
+    means = physics.RSSI_POWER_DBM, physics.RSSI_EXPONENT, 0.0
+    return means, (physics.RSSI_POWER_SIGMA_DB, physics.RSSI_EXPONENT_SIGMA, bodies)

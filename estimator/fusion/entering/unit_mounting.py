@@ -98,6 +98,7 @@ def mount(state: FusionState, number: int, worn: Mounting) -> None:
             node,
             worn=tuple(worn),
             trail=trail,
+            faced=change.of(*node.faced),
             still=None,
             unit_heading_rad=change.faced(node.unit_heading_rad),
             first_heading_rad=change.faced(node.first_heading_rad),

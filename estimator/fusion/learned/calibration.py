@@ -1,7 +1,8 @@
 """What readings alone say of a calibration, and whether a ranging technology is calibrated.
 
-Its scale is nearly nil, or else wide. What the readings alone say of it, d with variance v, is held against
-both kinds: p ∝ share · N(d; 0, v + σ²). The next solution has the prior of one of them.
+Its scale is nearly nil, or else wide; so is what bearers' bodies do to its readings, and to powers. What the
+readings alone say of it, d with variance v, is held against both kinds: p ∝ share · N(d; 0, v + σ²). The next
+solution has the prior of one of them.
 """
 
 import math
@@ -20,19 +21,24 @@ TRUSTED = 0.25
 """Probability of not being calibrated below which a technology is taken for calibrated. One that is wrongly
 trusted bends everything; one that is wrongly distrusted costs some sharpness."""
 
+SEEN = 0.9
+"""Probability from which on bodies are taken to be seen; until then covariances hold that they may be."""
+
 
 class Calibration(msgspec.Struct, frozen=True, array_like=True):
-    """What is thought of a ranging technology's scale.
+    """What is thought of a number of a technology: its scale, or what bodies do.
 
     Attributes:
         uncalibrated: probability that it is of the wide kind.
         narrow: standard deviation of its prior if it is calibrated, when that was judged last.
-        assumed: that of the prior that the scale was estimated with; nil: none was yet.
+        assumed: that of the prior that it was estimated with; nil: none was yet.
+        wide: that of the wide kind.
     """
 
     uncalibrated: float = physics.UNCALIBRATED
     narrow: float = physics.RANGE_SCALE_SIGMA
     assumed: float = 0.0
+    wide: float = physics.RANGE_SCALE_WIDE
 
 
 def told_of(sigma: float, estimate: float, variance: float) -> Told:
@@ -74,13 +80,32 @@ def scale_sigma(share: float, narrow: float) -> float:
     return narrow if share < TRUSTED else physics.RANGE_SCALE_WIDE
 
 
+def body_sigmas(technology: str, powers: bool) -> tuple[float, float]:
+    """Standard deviations of what bodies do to readings (m or dB), where they are not seen, else.
+
+    Args:
+        technology: of the readings.
+        powers: they are powers, else ranges.
+    """
+    if powers:
+        return physics.NO_BODY_DB, physics.BODY_DB
+    return physics.NO_BODY_M, physics.BODY_M.get(reported_as(technology), physics.BODY_OTHER_M)
+
+
 def bias_sigma_m(technology: str) -> float:
     """Standard deviation of the prior of a technology's bias (m)."""
     usual = physics.RANGE_BIAS_SIGMA_M.get(reported_as(technology), physics.RANGE_BIAS_OTHER_SIGMA_M)
     return math.hypot(usual, math.sqrt(delays(technology)) * physics.DELAY_SIGMA_M)
 
 
-def uncalibrated(sigma: float, estimate: float, variance: float, narrow: float) -> float:
+def uncalibrated(
+    sigma: float,
+    estimate: float,
+    variance: float,
+    narrow: float,
+    wide: float = physics.RANGE_SCALE_WIDE,
+    share: float = physics.UNCALIBRATED,
+) -> float:
     """Probability that a technology is not calibrated.
 
     Args:
@@ -88,15 +113,17 @@ def uncalibrated(sigma: float, estimate: float, variance: float, narrow: float) 
         estimate: of its scale error.
         variance: of the estimate, the prior included.
         narrow: standard deviation of the scale of a calibrated technology.
+        wide: that of one that is not.
+        share: how many are not.
     """
     information, product = told_of(sigma, estimate, variance)
     if not information > 0.0:
-        return physics.UNCALIBRATED
+        return share
     alone = 1.0 / information
     said = product * alone
-    odds = _logarithm(said, alone + physics.RANGE_SCALE_WIDE**2)
+    odds = _logarithm(said, alone + wide**2)
     odds -= _logarithm(said, alone + narrow**2)
-    odds += math.log(physics.UNCALIBRATED / (1.0 - physics.UNCALIBRATED))
+    odds += math.log(share / (1.0 - share))
     return 1.0 / (1.0 + math.exp(min(max(-odds, -700.0), 700.0)))
 
 
@@ -116,10 +143,8 @@ def doubt(known: Calibration, estimate: float, variance: float) -> float:
     """
     if not known.assumed > 0.0:
         return 0.0
-    wide = known.assumed >= physics.RANGE_SCALE_WIDE
-    share, sigma = (
-        (1.0 - known.uncalibrated, known.narrow) if wide else (known.uncalibrated, physics.RANGE_SCALE_WIDE)
-    )
+    wide = known.assumed >= known.wide
+    share, sigma = (1.0 - known.uncalibrated, known.narrow) if wide else (known.uncalibrated, known.wide)
     information, product = told_of(known.assumed, estimate, variance)
     other = 1.0 / (information + sigma**-2)
     return share * ((other * product - estimate) ** 2 + max(other - variance, 0.0)) / variance**2

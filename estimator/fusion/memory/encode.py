@@ -59,6 +59,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     window_t: float | None
     prior: PriorRecord | None
     calibrations: dict[str, Calibration]
+    bodies: dict[str, Calibration]
     bent_m: float
     level_cost: float
     navigations: dict[str, NavigationRecord]
@@ -110,6 +111,7 @@ def record_of(state: FusionState) -> FusionRecord:
             dict(prior.epochs),
         ),
         dict(state.calibrations),
+        dict(state.bodies),
         state.bent_m,
         state.level_cost,
         {name: navigation_record_of(known) for name, known in state.navigations.items()},
@@ -144,6 +146,7 @@ def state_of(record: FusionRecord) -> FusionState:
     state.suspected, state.exposed = record.suspected, record.exposed
     state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
     state.calibrations, state.bent_m = record.calibrations, record.bent_m
+    state.bodies = record.bodies
     state.level_cost = record.level_cost
     state.navigations = {name: navigation_of(known) for name, known in record.navigations.items()}
     state.delayed, state.delays_t = dict.fromkeys(record.delayed), record.delays_t

@@ -49,6 +49,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         first_heading_rad: heading that its unit reported first, in the unit's frame.
         unit_heading_rad: newest heading that its unit reported, in the unit's frame.
         speed_mps: horizontal speed by its newest displacement.
+        faced: where its bearer last went, as a unit vector in the unit's frame; nil before he has set out.
         trail: epochs, and displacements summed up to them in the unit's frame: newest seconds only.
         still: headings that its unit has reported since it stands still.
         way_m: length of its way so far.
@@ -84,6 +85,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     first_heading_rad: float | None = None
     unit_heading_rad: float | None = None
     speed_mps: float | None = None
+    faced: tuple[float, float] = (0.0, 0.0)
     trail: tuple[tuple[float, float, float, float], ...] = ()
     still: Standing | None = None
     way_m: float = 0.0

@@ -17,8 +17,8 @@ SIZES: Mapping[str, int] = {
     "walk": 6,
     "free": 6,
     "stand": 3,
-    "range": 2,
-    "rssi": 2,
+    "range": 3,
+    "rssi": 3,
     "altimeter": 1,
     "receiver": 4,
 }

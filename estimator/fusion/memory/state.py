@@ -8,7 +8,7 @@ import numpy as np
 
 from estimator.estimate import Notice, NoticeCode, Vector3
 from estimator.fusion import physics
-from estimator.fusion.learned.calibration import Calibration, narrow_sigma, scale_sigma
+from estimator.fusion.learned.calibration import SEEN, Calibration, body_sigmas, narrow_sigma, scale_sigma
 from estimator.fusion.learned.delays import Radio, Suspicion
 from estimator.fusion.learned.gyros import bias_sigma_radps
 from estimator.fusion.learned.link_correlation import Links
@@ -63,6 +63,7 @@ class FusionState:
         prior: what is known from before the window.
         navigations: of the boots whose units report raw samples, by node.
         calibrations: what is thought of the scale of each ranging technology that reaches odometry.
+        bodies: what is thought of what bearers' bodies do to the readings of each technology.
         delayed: the radios whose antenna delay is not calibrated.
         suspects: radios that may have one, and are trusted.
         delays_t: when that was asked last (s).
@@ -105,6 +106,7 @@ class FusionState:
         self.prior: Prior | None = None
         self.navigations: dict[str, Navigation] = {}
         self.calibrations: dict[str, Calibration] = {}
+        self.bodies: dict[str, Calibration] = {}
         self.delayed: dict[Radio, None] = {}
         self.suspects: dict[Radio, Suspicion] = {}
         self.delays_t = -math.inf
@@ -132,7 +134,7 @@ class FusionState:
         twin.navigations, twin.notices = dict(self.navigations), []
         twin.delayed, twin.suspects = dict(self.delayed), dict(self.suspects)
         twin.altimeters, twin.receivers = dict(self.altimeters), dict(self.receivers)
-        twin.clocks, twin.mistold = dict(self.clocks), dict(self.mistold)
+        twin.clocks, twin.mistold, twin.bodies = dict(self.clocks), dict(self.mistold), dict(self.bodies)
         return twin
 
     def count(self, what: Count, number: int = 1) -> None:
@@ -223,6 +225,12 @@ class FusionState:
         """Standard deviation of the prior of a ranging technology's scale, of the kind it is taken for."""
         known = self.calibrations.get(technology)
         return scale_sigma(0.0 if known is None else known.uncalibrated, self.narrow_sigma(technology))
+
+    def body_sigma(self, technology: str, powers: bool) -> float:
+        """Standard deviation of the prior of what bodies do to readings (m or dB), of the likelier kind."""
+        narrow, wide = body_sigmas(technology, powers)
+        known = self.bodies.get(technology)
+        return narrow if known is None or known.uncalibrated < SEEN else wide
 
     def narrow_sigma(self, technology: str) -> float:
         """Standard deviation of a ranging technology's scale where it is calibrated."""

@@ -15,6 +15,7 @@ from estimator.graph.dense import Array
 Mark = tuple[float, float, float, float]
 """An epoch, and the displacement summed up to it (m)."""
 NOWHERE = (0.0, 0.0, 0.0)
+NOBODY_FACES = (0.0, 0.0)
 STANDS, WALKS, DRIFTS = range(3)
 """How a node moves: not at all, as its unit's trail says, with the velocity of its block."""
 
@@ -37,6 +38,8 @@ class TrailEnd(NamedTuple):
         decided: readings can be held against its position.
         outside: no floor can be between it and another node.
         turned: nobody knows what its unit faces.
+        faced_e: where its bearer last went, in its unit's frame; nil where nobody knows.
+        faced_n: the same, north.
     """
 
     start: int
@@ -53,9 +56,12 @@ class TrailEnd(NamedTuple):
     decided: bool
     outside: bool
     turned: bool
+    faced_e: float
+    faced_n: float
 
 
 START, MOVES, STATES, POSE_T, E, N, U, FIRST, LAST, BLOCK, WAY_M, DECIDED, OUTSIDE, TURNED = range(14)
+FACED_E, FACED_N = 14, 15
 
 
 def end_of(state: FusionState, node: NodeState, marks: list[Mark]) -> TrailEnd:
@@ -93,6 +99,7 @@ def end_of(state: FusionState, node: NodeState, marks: list[Mark]) -> TrailEnd:
         start >= 0 or mode == "fixed",
         node.role in physics.OUTSIDE_ROLES,
         node.turned,
+        *(node.faced if mode == "unit" else NOBODY_FACES),
     )
 
 
@@ -141,6 +148,24 @@ def offset(end: Array, marks: Array, x: Array, t: float) -> Vector3:
     e, n, u = between(trail, t)
     e, n = (e - trail[-1, 1]) * stretch, (n - trail[-1, 2]) * stretch
     return cosine * e - sine * n, sine * e + cosine * n, u - trail[-1, 3]
+
+
+@njit(cache=True, error_model="numpy")
+def faced(end: Array, x: Array) -> tuple[float, float]:
+    """Where the bearer of a radio faces, as a unit vector: where he last went; nil where nobody knows.
+
+    Args:
+        end: its row, see `TrailEnd`.
+        x: the reference of the graph, n.
+    """
+    states = int(end[STATES])
+    if states < 0 or end[OUTSIDE] != 0.0 or end[MOVES] == DRIFTS:
+        return 0.0, 0.0
+    cosine, sine = np.cos(x[states]), np.sin(x[states])
+    return (
+        cosine * end[FACED_E] - sine * end[FACED_N],
+        sine * end[FACED_E] + cosine * end[FACED_N],
+    )
 
 
 @njit(cache=True, error_model="numpy")

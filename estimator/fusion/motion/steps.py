@@ -88,7 +88,7 @@ class Step:
         self.noise: Noise = NOTHING
         self._pose_t, self._unit_t = node.pose_t, node.unit_t
         self._heading_rad, self._speed_mps = node.unit_heading_rad, node.speed_mps
-        self._still, self._way_m = node.still, node.way_m
+        self._still, self._way_m, self._faced = node.still, node.way_m, node.faced
         self._level, self._unseen_up_m2 = node.level, node.unseen_up_m2
         self._marks: list[Mark] = list(node.trail or ((node.pose_t, 0.0, 0.0, 0.0),))
         self._whole_t, self._missed_s = node.whole_t, node.missed_s
@@ -142,6 +142,8 @@ class Step:
             noise = sum_of(noise, SET_OFF)
         if own > 0.0:
             self._speed_mps = math.hypot(e, n) / own
+            if self._speed_mps > physics.GOES_MPS:
+                self._faced = e / math.hypot(e, n), n / math.hypot(e, n)
         e, n, u = e + onward[0], n + onward[1], u + onward[2]
         self._pose_t = self._unit_t = t
         self._heading_rad, self.taken = reading.heading_rad, True
@@ -237,6 +239,7 @@ class Step:
             unit_t=self._unit_t,
             unit_heading_rad=self._heading_rad,
             speed_mps=self._speed_mps,
+            faced=self._faced,
             trail=tuple(marks[max(oldest - 1, 0) :]),
             still=self._still,
             way_m=self._way_m,

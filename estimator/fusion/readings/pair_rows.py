@@ -6,7 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from estimator.estimate import Vector3
 from estimator.fusion import physics
+from estimator.fusion.entering.technologies import BODY
 from estimator.fusion.learned import link_correlation
 from estimator.fusion.learned.noise import link_sigma, through_sigma
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, COLUMNS, RANGE, RSSI
@@ -14,6 +16,7 @@ from estimator.fusion.motion import recent_places
 from estimator.fusion.readings import echoes
 from estimator.fusion.rows import rows
 from estimator.graph.dense import Array
+from estimator.measurements.body import ahead_of
 
 T, VALUE, SIGMA, CONSTANT, TECHNOLOGY, LINK, A, B = range(8)
 """Columns of a reading between two nodes: its epoch; what was read; its claimed or assumed sigma; sent power
@@ -149,13 +152,39 @@ def fill(
         if unsure_m > 0.0 and technology[KIND] != RSSI:
             sigma = math.hypot(sigma, unsure_m)
             source = link = -1.0
-    row[rows.KIND], row[rows.VALUE], row[rows.CONSTANT] = kind_of(technology), pair[VALUE], pair[CONSTANT]
+    value, states = pair[VALUE], int(technology[START])
+    if states >= 0:
+        value -= x[states + BODY] * body(kind_of(technology), a, b, at_a, at_b, x)
+    row[rows.KIND], row[rows.VALUE], row[rows.CONSTANT] = kind_of(technology), value, pair[CONSTANT]
     row[rows.A], row[rows.B], row[rows.EXTRA] = a[recent_places.START], b[recent_places.START], extra
     row[rows.SIGMA], row[rows.NOMINAL] = sigma, pair[SIGMA]
     row[rows.OUTLIERS], row[rows.SHIFT] = technology[OUTLIERS], technology[SHIFT]
     row[rows.SPREAD], row[rows.SOURCE], row[rows.LINK] = technology[SPREAD], source, link
     for axis in range(3):
         row[rows.A_E + axis], row[rows.B_E + axis] = at_a[axis], at_b[axis]
+
+
+@njit(cache=True, error_model="numpy")
+def body(kind: int, a: Array, b: Array, at_a: Vector3, at_b: Vector3, x: Array) -> float:
+    """What a reading is off by for each metre or dB that bearers' bodies do.
+
+    Args:
+        kind: of the reading.
+        a: the end that measured, see `TrailEnd`.
+        b: the other one.
+        at_a: where the first stood at the reading's epoch from its block, or, fixed, where it stands (m).
+        at_b: the same of the other one.
+        x: the reference of the graph, n.
+    """
+    way_e, way_n = at_b[0] - at_a[0], at_b[1] - at_a[1]
+    start_a, start_b = int(a[recent_places.START]), int(b[recent_places.START])
+    if start_a >= 0:
+        way_e, way_n = way_e - x[start_a], way_n - x[start_a + 1]
+    if start_b >= 0:
+        way_e, way_n = way_e + x[start_b], way_n + x[start_b + 1]
+    one, other = recent_places.faced(a, x), recent_places.faced(b, x)
+    cosine = ahead_of(one[0] - other[0], one[1] - other[1], way_e, way_n).cosine
+    return -cosine if kind == RANGE else cosine
 
 
 @njit(cache=True, error_model="numpy")

@@ -6,6 +6,7 @@ fits them. What makes a window suspicious is what it does of it: steps that disa
 all ranges are stamped in whole seconds, which nothing but rounding does for long.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,11 +19,13 @@ from estimator.fusion.memory.state import FusionState
 from estimator.fusion.readings.clocks import stamped_by
 from estimator.graph.dense import Array
 from estimator.smoothing.changes.recent_ranges import DISAGREEING, RecentRanges
-from estimator.smoothing.changes.short_tracks import fit_along_unit, fit_freely
+from estimator.smoothing.changes.short_tracks import RangedUnit, fit_along_unit, fit_freely
 from estimator.smoothing.keyframes.walks import HEADING, SCALE
 
 SPAN_S, SPANS = 20.0, 4
 """By so many seconds at a time it is asked, and by so many of these."""
+AHEAD_M = (-0.5, -0.25, 0.25, 0.5)
+"""So far ahead of its bearer a radio seems to be through his body, who goes on evenly as if it were late."""
 ALL_S = 5.0
 """What is later in all is another fault."""
 
@@ -96,6 +99,8 @@ class ClockDelay(NamedTuple):
     good: float
 
 
+Span = tuple[RangedUnit, Array, Array]
+"""Ranges, about where they were heard, and what the unit faced then."""
 ON_TIME = ClockDelay(0.0, 0.0)
 
 
@@ -177,10 +182,18 @@ def _late(hearing: RecentRanges, index: int, search: Search) -> ClockDelay:
     apart = max(np.max([one[span] for one in told.values()]) - told[best][span] for span in range(len(spans)))
     if not (gain > search.clear and again > search.again and apart < search.apart):
         return ON_TIME
+    if max(_worn(spans, ahead_m) for ahead_m in AHEAD_M) >= float(told[best].sum()):
+        return ON_TIME
     fits = [(span[0], fit_along_unit(*span, best)) for span in spans]
     # A bad unit is bad at any time: where it is a clock, no way is likelier than the unit's own.
     led = all(fit.evidence > fit_freely(heard, [fit.way_m]).evidence for heard, fit in fits)
     return ClockDelay(by_s, min(fit.good for _, fit in fits) if led else 0.0)
+
+
+def _worn(spans: Sequence[Span], ahead_m: float) -> float:
+    """Evidence where ranges are on time, and what bodies do makes them seem otherwise."""
+    fits = [fit_along_unit(heard.worn(ahead_m), at_m, turn_rad) for heard, at_m, turn_rad in spans]
+    return sum(fit.evidence for fit in fits)
 
 
 def _put_right(state: FusionState, node: NodeState, late_s: float, search: Search) -> None:

@@ -51,6 +51,10 @@ class RecentRanges:
         return self.problem.rows.places(self.solved.x)
 
     @cached_property
+    def _bodies(self) -> Array:
+        return self.problem.rows.bodies(self.solved.x)
+
+    @cached_property
     def _through(self) -> NDArray[np.bool_]:
         return self.problem.rows.through(self.solved.x)
 
@@ -142,7 +146,8 @@ class RecentRanges:
         a, b = (place_m[mine] for place_m in self._places)
         off_m = np.where(first[:, None], a - b, b - a)
         there_m = np.where(first[:, None], b, a)[:, :2].copy()
-        range_m = np.sqrt((off_m**2).sum(axis=1)) + self.solved.linear.residual[mine]
+        # A clock that is late looks like a body: what that has been taken for is asked about again.
+        range_m = np.sqrt((off_m**2).sum(axis=1)) + self.solved.linear.residual[mine] + self._bodies[mine]
         t = rows.t[mine]
 
         def by_unit(at_t: Array) -> Array:

@@ -9,9 +9,12 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
+from estimator.fusion import physics
 from estimator.graph.dense import Array
 from estimator.smoothing.changes.track_fit import RangedTrack, TrackFit, fit_track
 
+WENT_S = 1.0
+"""Where a bearer faces is where he went in so long."""
 KNOT_S = 2.5
 """Between so many seconds a radio that nobody leads goes straight."""
 SPEED_MPS = 1.2
@@ -40,6 +43,17 @@ class RangedUnit(NamedTuple):
     def stretched(self, scale: float) -> Self:
         """The same, of a unit whose displacements are so many times as long."""
         return self._replace(led=lambda t: scale * self.led(t))
+
+    def worn(self, ahead_m: float) -> Self:
+        """The same, of a radio that is so far ahead of its unit: so bodies make it seem (m)."""
+
+        def led(t: Array) -> Array:
+            went = self.led(t) - self.led(t - WENT_S)
+            way_m = np.hypot(*went.T)[:, None]
+            faced = np.where(way_m > physics.GOES_MPS * WENT_S, went / np.maximum(way_m, 1e-9), 0.0)
+            return self.led(t) + ahead_m * faced
+
+        return self._replace(led=led)
 
 
 def fit_along_unit(heard: RangedUnit, at_m: Array, turns_rad: Array, late_s: float = 0.0) -> TrackFit:

@@ -6,8 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.fusion import physics
-from estimator.fusion.entering.technologies import path_loss_prior
-from estimator.fusion.learned.calibration import bias_sigma_m
+from estimator.fusion.entering.technologies import path_loss_prior, ranging_sigma
 from estimator.fusion.memory.prior import Key
 from estimator.graph.dense import Array, Indices
 from estimator.smoothing.keyframes.layout import Layout
@@ -83,13 +82,11 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
             mean += receiver.mean.tolist()
             known_by += [sigma**-2 for sigma in receiver.sigma]
             continue
-        at += [size + start, size + start + 1]
+        at += range(size + start, size + start + 3)
         if key[0] == "range":
-            name = state.sources[key[1]]
-            mean += [0.0, 0.0]
-            known_by += [state.range_scale_sigma(name) ** -2, bias_sigma_m(name) ** -2]
+            told, sigma = (0.0, 0.0, 0.0), ranging_sigma(state, state.sources[key[1]])
         else:
-            told, sigma = path_loss_prior(state.sources[key[1]])
-            mean += told
-            known_by += [sigma[0] ** -2, sigma[1] ** -2]
+            told, sigma = path_loss_prior(state, state.sources[key[1]])
+        mean += told
+        known_by += [each**-2 for each in sigma]
     return Priors(np.array(at, dtype=np.intp), np.array(mean), np.array(known_by, dtype=np.float64))

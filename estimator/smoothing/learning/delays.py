@@ -104,6 +104,8 @@ def distrust(state: FusionState, radios: list[Delay]) -> None:
             state.noise.setdefault(name, state.noise[was])
         if was in state.calibrations:
             state.calibrations.setdefault(name, state.calibrations[was])
+        if was in state.bodies:
+            state.bodies.setdefault(name, state.bodies[was])
         mine = (pairs[:, 1] == RANGE) & (pairs[:, [6, 2, 3]] == (source, a, b)).all(axis=1)
         pairs[mine, 6] = state.source(name)
         technology_states(state, name)

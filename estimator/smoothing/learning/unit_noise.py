@@ -13,7 +13,10 @@ from msgspec.structs import replace
 from numba import njit
 from numpy.typing import NDArray
 
-from estimator.fusion.learned.calibration import Calibration, scale_sigma, told_of, uncalibrated
+from estimator.fusion import physics
+from estimator.fusion.entering.technologies import BODY
+from estimator.fusion.learned.calibration import Calibration, body_sigmas, scale_sigma, told_of, uncalibrated
+from estimator.fusion.memory.prior import Key
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.walks import STATES, Motion
@@ -37,6 +40,8 @@ BIAS = 4
 """Which of a state's numbers is the gyro bias."""
 PARTS = 4
 """Numbers of a state that its noise is learned of: place and heading."""
+FARTHEST = 3.0
+"""So many of its standard deviations bodies do at most."""
 
 
 def learn(
@@ -182,6 +187,29 @@ def calibrate(state: FusionState, problem: Problem, x: Array, border: Array) -> 
             state.calibrations[name] = Calibration(told, narrow, sigma)
             # Another prior bends everything: what follows from it is not left for later.
             state.due = state.due or scale_sigma(told, narrow) != sigma
+        if key[0] in ("range", "rssi") and key not in known and problem.rows.by_units(key[1]):
+            judge_bodies(state, key, float(x[size + start + BODY]), float(border[start + BODY, start + BODY]))
+
+
+def judge_bodies(state: FusionState, key: Key, estimate: float, variance: float) -> None:
+    """Judge anew whether bearers' bodies are seen in the readings of a technology.
+
+    Args:
+        state: takes what is thought of it.
+        key: the technology.
+        estimate: of what they do (m or dB).
+        variance: of the estimate, the prior included.
+    """
+    name, powers = state.sources[key[1]], key[0] == "rssi"
+    sigma = state.body_sigma(name, powers)
+    narrow, wide = body_sigmas(name, powers)
+    told = uncalibrated(sigma, estimate, variance, narrow, wide, physics.BODIES)
+    information, product = told_of(sigma, estimate, variance)
+    if abs(product) > FARTHEST * wide * information:
+        # No body does so much: it is a clock, or something else that looks like one.
+        told = 0.0
+    state.bodies[name] = Calibration(told, narrow, sigma, wide)
+    state.due = state.due or state.body_sigma(name, powers) != sigma
 
 
 def learn_biases(state: FusionState, problem: Problem, x: Array, found: Array) -> None:

@@ -12,12 +12,13 @@ from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import bearing_at
+from estimator.measurements.body import ahead_of
 from estimator.measurements.range import range_at
 from estimator.measurements.rssi import rssi_at
 from estimator.smoothing.keyframes.ends import FIXED, UNIT, Table, faced, place_end
 
-ANY = 14
-"""Numbers that one row depends on at most: two ends of six, two of a technology."""
+ANY = 15
+"""Numbers that one row depends on at most: two ends of six, three of a technology."""
 
 
 class Readings(NamedTuple):
@@ -27,7 +28,8 @@ class Readings(NamedTuple):
         kind: of each pair, m.
         value: what was measured, m.
         constant: known part of a power (dB), or heading that a bearing counts from (rad), m.
-        extra: where its technology's two numbers are in the flat unknowns, m × 2; 0 if it has none.
+        extra: where its technology's three numbers are in the flat unknowns, m × 3; 0 if it has none.
+        facing: how bearers' bodies lie between its ends, m × 2, see `bodies`.
         a: first ends of the pairs.
         b: second ends.
         axis: what a single tells of its node: 0 to 2 the place, above it the number itself, n.
@@ -45,6 +47,7 @@ class Readings(NamedTuple):
     value: Array
     constant: Array
     extra: Integers
+    facing: Array
     a: Table
     b: Table
     axis: Integers
@@ -66,11 +69,20 @@ class PairPrediction(NamedTuple):
     by_u: float
     by_first: float
     by_second: float
+    by_body: float
 
 
 @njit(cache=True)
 def predict_pair(
-    kind: int, value: float, constant: float, first: float, second: float, a: Array, b: Array
+    kind: int,
+    value: float,
+    constant: float,
+    first: float,
+    second: float,
+    body: float,
+    facing: Array,
+    a: Array,
+    b: Array,
 ) -> PairPrediction:
     """One pair with its ends at a and b, 3 each (m).
 
@@ -80,20 +92,25 @@ def predict_pair(
         constant: see `Readings`; of a bearing, all that it counts from (rad).
         first: first state of its technology.
         second: second one.
+        body: what a bearer's body does to it (m or dB).
+        facing: see `Readings`, 2.
         a: where it was measured.
         b: what was measured.
     """
     e, n, u = a[0] - b[0], a[1] - b[1], a[2] - b[2]
     if kind >= BEARING:
         found = bearing_at(-e, -n, constant)
-        return PairPrediction(found.predicted, found.by_e, found.by_n, 0.0, -1.0, 0.0)
+        return PairPrediction(found.predicted, found.by_e, found.by_n, 0.0, -1.0, 0.0, 0.0)
     squared = e * e + n * n + u * u
     if kind == RANGE:
         along = range_at(squared, first, second)
     else:
         along = rssi_at(value, squared, first + constant, second)
     by_e, by_n, by_u = e * along.by_a, n * along.by_a, u * along.by_a
-    return PairPrediction(along.predicted, by_e, by_n, by_u, along.by_first, along.by_second)
+    seen = ahead_of(facing[0], facing[1], e, n)
+    by_e, by_n = by_e + body * seen.by_east, by_n + body * seen.by_north
+    predicted = along.predicted + body * seen.cosine
+    return PairPrediction(predicted, by_e, by_n, by_u, along.by_first, along.by_second, seen.cosine)
 
 
 @njit(cache=True)
@@ -119,12 +136,13 @@ def residuals(readings: Readings, x: Array) -> Array:
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
     numbers = faced(x, readings.headings)
-    value, constants = readings.value, readings.constant
+    value, constants, facing = readings.value, readings.constant, readings.facing
     for i in range(m):
         place_end(ends_a, i, numbers, a, turned)
         place_end(ends_b, i, numbers, b, turned)
         constant = counted_from(kinds[i], constants[i], ends_a, i, x)
-        seen = predict_pair(kinds[i], value[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
+        first, second, body = x[extra[i, 0]], x[extra[i, 1]], x[extra[i, 2]]
+        seen = predict_pair(kinds[i], value[i], constant, first, second, body, facing[i], a, b)
         found[i] = value[i] - seen.predicted
     on, by, crumb = readings.on, readings.by, readings.crumb
     for i in range(n):
@@ -151,7 +169,7 @@ def jacobians(readings: Readings, x: Array, found: Array) -> None:
     Args:
         readings: of the window.
         x: the estimate, flat.
-        found: takes them, rows × 14; zeros before. Numpy is given memory for it in large pages, a compiled
+        found: takes them, rows × 15; zeros before. Numpy is given memory for it in large pages, a compiled
             loop would wait for thousands of small ones.
     """
     m, n, d = len(readings.kind), len(readings.axis), len(readings.by.kind)
@@ -159,14 +177,15 @@ def jacobians(readings: Readings, x: Array, found: Array) -> None:
     slope = np.empty(3)
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
     numbers = faced(x, readings.headings)
-    value, constants = readings.value, readings.constant
+    value, constants, facing = readings.value, readings.constant, readings.facing
     for i in range(m):
         kind = kinds[i]
         by_a[:], by_b[:] = 0.0, 0.0
         place_end(ends_a, i, numbers, a, by_a)
         place_end(ends_b, i, numbers, b, by_b)
         constant = counted_from(kind, constants[i], ends_a, i, x)
-        seen = predict_pair(kind, value[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
+        first, second, body = x[extra[i, 0]], x[extra[i, 1]], x[extra[i, 2]]
+        seen = predict_pair(kind, value[i], constant, first, second, body, facing[i], a, b)
         if ends_a.kind[i] != FIXED:
             slope[0], slope[1], slope[2] = seen.by_e, seen.by_n, seen.by_u
             chain_rule(slope, by_a, found[i, :6])
@@ -174,7 +193,7 @@ def jacobians(readings: Readings, x: Array, found: Array) -> None:
             slope[0], slope[1], slope[2] = -seen.by_e, -seen.by_n, -seen.by_u
             chain_rule(slope, by_b, found[i, 6:12])
         if kind < BEARING:
-            found[i, 12], found[i, 13] = seen.by_first, seen.by_second
+            found[i, 12], found[i, 13], found[i, 14] = seen.by_first, seen.by_second, seen.by_body
         elif kind == BODY_BEARING and ends_a.kind[i] == UNIT:
             found[i, 3] += seen.by_first
     on, by, crumb = readings.on, readings.by, readings.crumb
@@ -255,7 +274,7 @@ def add_reckoning_noise(jacobian: Array, a: Array, b: Array, on: Array, by: Arra
     """Add to the noise of all rows the dead reckoning noise of their ends since their keyframes.
 
     Args:
-        jacobian: of the rows, m × 14.
+        jacobian: of the rows, m × 15.
         a: variances of the first ends of the pairs, × 3 (m²); see `ends.Ends`.
         b: those of the second ends.
         on: those of the ends of the singles.

@@ -14,9 +14,11 @@ from estimator.fusion.readings import echoes
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import wrap
+from estimator.measurements.body import NEAR_M
 from estimator.smoothing.keyframes.ends import FREE, UNIT, ground_of, place_ends
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.unknowns import Unknowns
+from estimator.smoothing.readings.bodies import facing_of
 from estimator.smoothing.readings.fix_speeds import fix_speeds
 from estimator.smoothing.readings.linearisation import (
     ANY,
@@ -41,7 +43,7 @@ class Linearised(NamedTuple):
     """Rows at an estimate.
 
     Attributes:
-        jacobian: derivatives, m × 14.
+        jacobian: derivatives, m × 15.
         residual: z − h(x) − shift, m.
     """
 
@@ -55,7 +57,7 @@ class Rows:
     Attributes:
         t: epoch of each row, m (s).
         slab: keyframe of each row, m.
-        columns: what each depends on, m × 14, as `graph.chain_kernels.scatter_rows` takes it.
+        columns: what each depends on, m × 15, as `graph.chain_kernels.scatter_rows` takes it.
         sigma: standard deviation of the good noise, m.
         told: the same by technology and link alone, wherever both ends are, m.
         shift: what they are thought to be too long by, m.
@@ -77,10 +79,11 @@ class Rows:
         told = LedgerRows(ledger.table("pairs"), ledger.table("singles"), ledger.table("drops"))
         nodes = layout.state.nodes
         outside = [nodes[name].role in physics.OUTSIDE_ROLES for name in layout.state.owners]
+        ground = ground_of(layout)
         found = window_readings(
             told,
             since_t,
-            ground_of(layout),
+            ground,
             technologies_of(layout),
             np.array(outside, dtype=bool),
             layout.headings(),
@@ -98,7 +101,8 @@ class Rows:
         self._inside, self._strongest, self._unsure_m2 = found.inside, found.strongest, found.unsure_m2
         self._bearings = found.bearings
         speeds = fix_speeds(self.singles, found.readings.off[:, 1], ledger.table("poses"))
-        self._readings = found.readings._replace(speed=speeds)
+        facing = facing_of(layout, ground, self.pairs, self.slab)
+        self._readings = found.readings._replace(speed=speeds, facing=facing)
 
     def of(self, numbers: Sequence[int]) -> NDArray[np.bool_]:
         """Which of them tell of some walks, or of what these have dropped, m.
@@ -206,7 +210,7 @@ class Rows:
 
         Args:
             x: the estimate, flat.
-            jacobian: of the rows, m × 14, by which the noise of a place becomes one of the reading.
+            jacobian: of the rows, m × 15, by which the noise of a place becomes one of the reading.
         """
         self.sigma = self.told.copy()
         held = self.floors is not None
@@ -239,6 +243,16 @@ class Rows:
         a, b = self._readings.a.kind, self._readings.b.kind
         return bool((((a == UNIT) | (b == UNIT)) & mine).any())
 
+    def bodies(self, x: Array) -> Array:
+        """What bearers' bodies are thought to do to each pair at an estimate x, flat, m (m or dB)."""
+        way = separations(self._readings, x)
+        east, north = way[:, 0], way[:, 1]
+        facing, body = self._readings.facing, x[self._readings.extra[:, 2]]
+        found: Array = (
+            body * (facing[:, 0] * east + facing[:, 1] * north) / np.sqrt(east**2 + north**2 + NEAR_M**2)
+        )
+        return found
+
     def linearise(self, x: Array) -> Linearised:
         """Residuals and derivatives at an estimate x, flat."""
         return Linearised(self.jacobian(x), self.residual(x))
@@ -251,7 +265,7 @@ class Rows:
         return found
 
     def jacobian(self, x: Array) -> Array:
-        """Derivatives at an estimate x, flat, m × 14."""
+        """Derivatives at an estimate x, flat, m × 15."""
         found = np.zeros((len(self.nominal), ANY))
         jacobians(self._readings, x, found)
         return found

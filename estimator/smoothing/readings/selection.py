@@ -17,7 +17,7 @@ class Selection(NamedTuple):
 
     Attributes:
         chosen: m.
-        extra: columns of its technology, m × 2; −1: it has none.
+        extra: columns of its technology, m × 3; −1: it has none.
         slab: keyframe, m.
         inside: it is a range or a power, and no end is outside the building, m.
     """
@@ -43,11 +43,12 @@ def choose(
     """
     m = len(pairs)
     chosen, inside = np.empty(m, dtype=np.bool_), np.empty(m, dtype=np.bool_)
-    extra, slab = np.full((m, 2), -1), np.empty(m, dtype=np.int64)
+    extra, slab = np.full((m, 3), -1), np.empty(m, dtype=np.int64)
     for i in range(m):
         kind, source, first, second = int(pairs[i, 1]), int(pairs[i, 6]), int(pairs[i, 2]), int(pairs[i, 3])
         if kind <= RSSI and source >= 0 and technology[kind, source] >= 0:
-            extra[i, 0], extra[i, 1] = technology[kind, source], technology[kind, source] + 1
+            for c in range(3):
+                extra[i, c] = technology[kind, source] + c
         a_moves, b_moves = a.kind[i] in (UNIT, FREE), b.kind[i] in (UNIT, FREE)
         chosen[i] = a.usable[i] and b.usable[i] and (extra[i, 0] >= 0 or kind > RSSI)
         if (a_moves and b_moves and a.slab[i] != b.slab[i]) or (a.columns[i, 0] < 0 and b.columns[i, 0] < 0):

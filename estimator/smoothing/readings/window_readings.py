@@ -158,12 +158,12 @@ def read(
     ends: tuple[Ends, Ends, Ends, Ends, Ends],
     headings: Integers,
 ) -> Readings:
-    """All that the residuals of readings follow from, but for how fast who flies goes.
+    """All that the residuals of readings follow from, but for how fast who flies goes, and who faces what.
 
     Args:
         pairs: rows of the ledger, m × 11.
         singles: the same, n × 7.
-        extra: columns of each pair's technology, m × 2; −1: it has none.
+        extra: columns of each pair's technology, m × 3; −1: it has none.
         off: columns of what each single's altimeter or receiver is off by, and how late, n × 2; −1: none.
         ground: of the window.
         ends: of the pairs, a and b, of the singles, who dropped, and what was dropped.
@@ -171,9 +171,9 @@ def read(
     """
     a, b, on, by, crumb = ends
     border = len(ground.grid) * STATES * len(ground.spans) - STATES * len(ground.spans)
-    at = np.zeros((len(pairs), 2), dtype=np.int64)
+    at = np.zeros((len(pairs), 3), dtype=np.int64)
     for i in range(len(pairs)):
-        for c in range(2):
+        for c in range(3):
             if extra[i, c] >= 0:
                 at[i, c] = border + extra[i, c]
     where = np.where(off >= 0, border + off, -1)
@@ -182,6 +182,7 @@ def read(
         pairs[:, 4].copy(),
         pairs[:, 7].copy(),
         at,
+        np.zeros((len(pairs), 2)),
         a.table,
         b.table,
         numbers(singles, 2),

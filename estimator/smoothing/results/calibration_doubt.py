@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
+from estimator.fusion.entering.technologies import BODY
 from estimator.fusion.learned.calibration import Calibration, doubt
 from estimator.graph.dense import Array
 from estimator.smoothing.changes.told_fixes import shared_moments
@@ -21,7 +22,7 @@ from estimator.smoothing.told_causes import ask
 
 
 def scales(layout: Layout) -> dict[int, Calibration]:
-    """What is thought of scales of ranging technologies, by where they are in an estimate, flat."""
+    """What is thought of scales of technologies and of bodies, by where they are in an estimate, flat."""
     state, size = layout.state, layout.length * layout.width
     found = {}
     for (kind, source), start in layout.technologies.items():
@@ -31,6 +32,9 @@ def scales(layout: Layout) -> dict[int, Calibration]:
             # Each solution of the whole incident has a prior of its own.
             narrow, assumed = state.narrow_sigma(name), state.range_scale_sigma(name)
             found[size + start] = replace(known, narrow=narrow, assumed=assumed)
+        bodies = state.bodies.get(name) if kind in ("range", "rssi") else None
+        if bodies is not None:
+            found[size + start + BODY] = replace(bodies, assumed=state.body_sigma(name, kind == "rssi"))
     return found
 
 

@@ -136,7 +136,7 @@ def _row(state: FusionState, rows: Rows, solved: Solution, flat: Array, i: int, 
     residual, sigma = float(solved.linear.residual[i] + rows.shift[i]), float(rows.sigma[i])
     if kind == "rssi" and state.sources[int(rows.source[i])] == REACH:
         kind = "reach"
-        value, residual, sigma = in_metres(float(solved.x[flat[i, -2]]), residual, sigma)
+        value, residual, sigma = in_metres(float(solved.x[flat[i, 2 * STATES]]), residual, sigma)
     return Measurement(
         kind=kind,
         t=float(rows.t[i]),

@@ -23,16 +23,16 @@ NARROW = physics.RANGE_SCALE_SIGMA
 
 
 def measured(seed: int) -> tuple[Array, Array]:
-    """Kirchhoff matrix and b of a place, a scale and a bias, by what some readings say of all of them."""
+    """Kirchhoff matrix and b of a place, a scale, a bias and bodies, by what some readings say of all of them."""
     chance = np.random.default_rng(seed)
-    rows = chance.normal(0.0, 20.0, (12, 5))
+    rows = chance.normal(0.0, 20.0, (12, 6))
     return rows.T @ rows, rows.T @ chance.normal(0.0, 1.0, 12) + 200.0 * rows[0]
 
 
 def solved(seed: int, sigma: float) -> tuple[Array, Array, Array]:
     """Matrix, estimate and covariance with a prior of the scale of that standard deviation."""
     matrix, vector = measured(seed)
-    prior = np.diag([1e-2, 1e-2, 1e-2, sigma**-2, 1.0])
+    prior = np.diag([1e-2, 1e-2, 1e-2, sigma**-2, 1.0, 1.0])
     whole = matrix + prior
     return whole, np.asarray(np.linalg.solve(whole, vector)), np.asarray(np.linalg.inv(whole))
 
@@ -81,7 +81,7 @@ def test_a_picture_holds_the_delay_that_a_radio_may_have(seed: int) -> None:
     matrix, x, covariance = solved(seed, NARROW)
     sigma_m, seen = 0.7, measured(seed)[0][:, 4]
     moved = -covariance @ seen
-    scale, bias_m = (sigma_m * moved[3:]).tolist()
+    scale, bias_m, _ = (sigma_m * moved[3:]).tolist()
     state = FusionState()
     state.graph = Kirchhoff.of([PLACE, SCALE], matrix, matrix @ x * 0.0, x)
     state.nodes["ff1"] = NodeState(node="ff1", role="responder", t=0.0, mode="static")

@@ -12,13 +12,13 @@ from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.smoothing.chain.chain import Chain
+from estimator.smoothing.first_pass import FirstPass
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.window_extent import spacing_s
-from estimator.trackers.heard import Heard
 
 
 def entered(east_m: float = 0.0, north_m: float = 0.0, node: str = "ff1") -> Node:
@@ -29,10 +29,7 @@ def entered(east_m: float = 0.0, north_m: float = 0.0, node: str = "ff1") -> Nod
 
 def fused(readings: Sequence[AnyReading]) -> FusionState:
     """What the first pass leaves of an incident."""
-    heard = Heard(lag_s=0.0)
-    heard.hear(readings)
-    state, _ = heard.ended()
-    return state
+    return FirstPass().ended(sorted(readings, key=lambda r: r.t))
 
 
 def problem_of(state: FusionState, since_t: float | None = None, prior: Prior | None = None) -> Problem:

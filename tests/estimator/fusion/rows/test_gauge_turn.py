@@ -30,7 +30,7 @@ def mapped(chance: np.random.Generator, known_m: float = 0.5) -> Kirchhoff:
     for variable in (FF, *BEACONS):
         graph.add_node(variable, [*chance.uniform(15.0, 40.0, 2) * chance.choice([-1, 1], 2), 0.0], [1e3] * 3)
     graph.add_node(UNIT, (0.0, 0.0, 0.0), (1e3, 0.01, 0.02))
-    graph.add_node(RADIO, (0.0, 0.0), (0.01, 0.1))
+    graph.add_node(RADIO, (0.0, 0.0, 0.0), (0.01, 0.1, 0.02))
     turn = turn_about(graph.reference, graph.turning(), BASE_M)
     rows = chance.normal(0.0, 1.0 / known_m, (4 * graph.size, graph.size))
     rows -= np.outer(rows @ turn, turn) / (turn @ turn)

@@ -1,0 +1,95 @@
+"""What bearers' bodies do to readings: a radio is worn, and what lies behind its bearer is seen through him.
+
+A range to it is too long and a power from it too low, both by about the cosine of the angle between where he
+faces and where the other radio lies. Where he faces is where he goes by his unit, whose frame is turned as it
+was thought to be before the window is solved: a number that is known. How large the effect is, the third
+number of each technology tells. Of who has no unit nobody knows what he faces.
+"""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from estimator.fusion import physics
+from estimator.fusion.memory.ledger import RANGE, RSSI
+from estimator.graph.chain_kernels import Integers
+from estimator.graph.dense import Array
+from estimator.smoothing.keyframes.displacement_sums import Ways
+from estimator.smoothing.keyframes.ends import Ground
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.keyframes.walks import HEADING, STATES
+
+
+def facing_of(layout: Layout, ground: Ground, pairs: Array, slab: Integers) -> Array:
+    """Vectors whose product with the direction from the second end of a pair to the first tells its bodies.
+
+    Of a power they point to what is seen through nobody, of a range to what is seen through a bearer.
+
+    Args:
+        layout: of the window.
+        ground: the same, as arrays.
+        pairs: rows of the ledger, m × 11.
+        slab: keyframe of each, m at least.
+
+    Returns:
+        m × 2; nil of bearings, and of radios that nobody wears.
+    """
+    keyframes = layout.start()[: layout.length * layout.width].reshape(layout.length, layout.width)
+    worn = np.array([one.node.role not in physics.OUTSIDE_ROLES for one in layout.walks], dtype=np.bool_)
+    return turned_to(pairs, slab, ground, worn, keyframes)
+
+
+@njit(cache=True)
+def turned_to(
+    pairs: Array, slab: Integers, ground: Ground, worn: NDArray[np.bool_], keyframes: Array
+) -> Array:
+    """See `facing_of`.
+
+    Args:
+        pairs: rows of the ledger, m × 11.
+        slab: keyframe of each, m at least.
+        ground: of the window.
+        worn: whether the radio of each walk has a bearer.
+        keyframes: the estimate, k × 6 walks.
+    """
+    found, ways, walk = np.zeros((len(pairs), 2)), ground.ways, ground.nodes.walk
+    unit = np.full(len(walk), -1)
+    for w in range(len(ways.numbers)):
+        unit[ways.numbers[w]] = w
+    steps = by_steps(ways)
+    for i in range(len(pairs)):
+        if pairs[i, 1] > RSSI:
+            continue
+        t, k = pairs[i, 0], slab[i]
+        for end in range(2):
+            number = int(pairs[i, 2 + end])
+            w = walk[number]
+            if w < 0 or unit[number] < 0 or not worn[w]:
+                continue
+            sign = 1.0 if (end == 1) == (pairs[i, 1] != RANGE) else -1.0
+            first, after = ways.firsts[unit[number]], ways.firsts[unit[number] + 1]
+            j = min(first + np.searchsorted(ways.marks[first:after], t), after - 1)
+            turn = keyframes[k, STATES * w + HEADING]
+            cosine, sine = np.cos(turn), np.sin(turn)
+            found[i, 0] += sign * (cosine * steps[j, 0] - sine * steps[j, 1])
+            found[i, 1] += sign * (sine * steps[j, 0] + cosine * steps[j, 1])
+    return found
+
+
+@njit(cache=True)
+def by_steps(ways: Ways) -> Array:
+    """Where bearers go before each mark of their ways, in their units' frames: unit vectors, × 2.
+
+    Who stands faces where he went; nil before he has set out.
+    """
+    found = np.zeros((len(ways.marks), 2))
+    for w in range(len(ways.numbers)):
+        for j in range(ways.firsts[w] + 1, ways.firsts[w + 1]):
+            east = ways.sums[j, 0] - ways.sums[j - 1, 0]
+            north = ways.sums[j, 1] - ways.sums[j - 1, 1]
+            way_m = np.hypot(east, north)
+            if way_m > physics.GOES_MPS * (ways.marks[j] - ways.marks[j - 1]):
+                found[j, 0], found[j, 1] = east / way_m, north / way_m
+            else:
+                found[j] = found[j - 1]
+    return found
