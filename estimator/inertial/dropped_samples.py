@@ -11,7 +11,7 @@ BRIDGED_S = 0.03
 TURNING_S = 0.1
 """And what a boot turns about for so long."""
 BRIDGED_OFF, FASTER_OFF = 0.3, 0.5
-"""What a bridge may be off by, as a share of what goes on in it; and so much of its forces nothing holds."""
+"""What a bridge may be off by, as a share of what goes on in it; and so much of its forces."""
 
 TURNS_RADPS, TURNED_RAD, TURNED_RADPS = 3.0, 1.0, 0.1
 """While samples are missing their bearer may turn on his heel; then he mostly goes on; in the end he may face
@@ -35,11 +35,11 @@ def bridge(boot: Boot, before: Array, after: Array, missing: int, off_s: float) 
     found = before + shares * (after - before)
     velocity, turned_rad2 = boot.held.velocity, short_turn_rad2(found, off_s)
     lost_m2 = (BRIDGED_OFF * off_s) ** 2 * float(np.dot(velocity, velocity))
-    for each in (boot.held, boot.free):
-        each.covariance[range(ATTITUDE, FORCE), range(ATTITUDE, FORCE)] += turned_rad2
     ahead = found[:, :3] @ boot.free.attitude.T - (0.0, 0.0, GRAVITY_MPS2)
     faster_m2ps2 = (FASTER_OFF * off_s) ** 2 * float((ahead**2).sum(axis=1).max())
-    boot.free.covariance[range(VELOCITY, ATTITUDE), range(VELOCITY, ATTITUDE)] += faster_m2ps2
+    for each in (boot.held, boot.free):
+        each.covariance[range(ATTITUDE, FORCE), range(ATTITUDE, FORCE)] += turned_rad2
+        each.covariance[range(VELOCITY, ATTITUDE), range(VELOCITY, ATTITUDE)] += faster_m2ps2
     return found, lost_m2, turned_rad2
 
 

@@ -33,7 +33,7 @@ from estimator.inertial.footholds import move_prints
 from estimator.inertial.rotations import azimuth_rad, turned_about
 from estimator.inertial.strapdown import remove_errors, zero_velocity_update
 from estimator.inertial.zero_velocity import ALIKE_S, QUIET
-from estimator.inertial.zupt import hold_level, note_heading
+from estimator.inertial.zupt import DOUBTED, hold_level, note_heading
 
 QUIET_S, AGAIN_S = 0.2, 0.3
 """What is quiet for so long may rest; nearer to each other, rests have the same error: they count once."""
@@ -58,8 +58,6 @@ BLOW_MPS2 = 10.0
 """A force that changes by so much from one sample to the next has done more between them."""
 BELIEVED_OFF = 0.1
 """What is off of a way that is believed, as a share."""
-DOUBTED = 3.0
-"""Held by what seems to be a standstill each time, a navigation believes more of itself than is true."""
 CARRIED_MPS = 10.0
 """Nobody is carried faster: his unit measures something else."""
 LOST_MPS = 1.0

@@ -17,13 +17,23 @@ from estimator.inertial.boot import (
     STOOD,
     TURNED_RAD,
     TURNED_RAD2,
+    VELOCITY,
     Boot,
 )
-from estimator.inertial.footholds import FOOTHOLD, NOW_S, STRIDE_S, note_standstill
+from estimator.inertial.footholds import FOOTHOLD, HIDDEN_M2PS2, NOW_S, STRIDE_S, note_standstill
 from estimator.inertial.rotations import azimuth_rad
 from estimator.inertial.strapdown import remove_errors, update_state, zero_velocity_update
 from estimator.inertial.zero_velocity import ALIKE_S, rolling_mps, stance_sigma
 
+DISAGREES = 11.3
+"""A boot that stands disagrees so much with its navigation once in a hundred times (χ² of three)."""
+DOUBTED = 3.0
+"""Held by what seems to be a standstill each time, a navigation believes more of itself than is true."""
+CLEAR_MPS = 0.05
+"""A boot that swings turns by half a radian a second at least: slower than this it stands, whatever its
+navigation made of a blow."""
+SWINGS_MOST_S = 1.0
+"""Whoever walks sets each boot down more often: after that its navigation is no witness any more."""
 UNHELD_S = 1.0
 """What a boot is moved by while it seems to stand is forgotten in so long: its tilt is not known better."""
 LEVEL_M, LEVEL_SIGMA_M = 0.05, 0.005
@@ -52,12 +62,14 @@ def apply_zupt(boot: Boot, ahead: Array, rate: Array, step_s: float) -> float:
     footing = boot.footing
     footing[HELD_S] += step_s
     boot.footholds[NOW_S] += step_s
-    sigma = stance_sigma(boot.stance, footing[HELD_S])
+    sigma, rolling = stance_sigma(boot.stance, footing[HELD_S]), rolling_mps(boot.held.attitude, rate)
+    if not np.isinf(sigma) and _swings(boot, rolling, sigma):
+        sigma = np.inf
     if not np.isinf(sigma):
         footing[STOOD] = 1.0 if footing[HELD_S] > STRIDE_S else footing[STOOD] + 1.0
         footing[HELD_S] = 0.0
         error = np.zeros(ERRORS)
-        zero_velocity_update(boot.held, error, rolling_mps(boot.held.attitude, rate), sigma)
+        zero_velocity_update(boot.held, error, rolling, sigma)
         remove_errors(boot.held, error)
         if footing[STOOD] == FOOTHOLD:
             hold_level(boot)
@@ -65,6 +77,34 @@ def apply_zupt(boot: Boot, ahead: Array, rate: Array, step_s: float) -> float:
         note_standstill(boot.footholds, boot.held.place)
     _sum_unheld(boot, ahead, step_s)
     return sigma
+
+
+@njit(cache=True, error_model="numpy")
+def _swings(boot: Boot, rolling: Array, sigma_mps: float) -> bool:
+    """Whether a boot that seems to stand swings: its navigation knows that it goes faster than it may.
+
+    What was held just now has not begun to swing. A navigation that says so for longer than a swing takes is
+    wrong, and doubted.
+
+    Args:
+        boot: changed in place where its velocity is doubted.
+        rolling: the velocity of a boot that stands, 3 (m/s).
+        sigma_mps: how far from that it may be along each axis (m/s).
+    """
+    held, off_mps, squared = boot.held, rolling - boot.held.velocity, 0.0
+    if sigma_mps < CLEAR_MPS or boot.footing[HELD_S] < STRIDE_S:
+        return False
+    for c in range(3):
+        known = DOUBTED**2 * held.covariance[VELOCITY + c, VELOCITY + c]
+        squared += off_mps[c] ** 2 / (known + sigma_mps**2)
+    if squared < DISAGREES:
+        return False
+    if boot.footing[HELD_S] < SWINGS_MOST_S:
+        return True
+    for c in range(3):
+        held.covariance[VELOCITY + c, VELOCITY + c] += off_mps[c] ** 2
+        boot.footholds[HIDDEN_M2PS2] = max(boot.footholds[HIDDEN_M2PS2], off_mps[c] ** 2)
+    return False
 
 
 @njit(cache=True, error_model="numpy")
