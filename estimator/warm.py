@@ -42,6 +42,7 @@ from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.changes.moved_nodes import test_place
 from estimator.smoothing.changes.track_fit import RangedTrack, fit_track
+from estimator.smoothing.images.frame_turns import HEARD, ToldWay, power_costs, turn_gains
 from estimator.smoothing.keyframes.displacement_sums import Way, ways_of
 from estimator.smoothing.keyframes.ends import Ground, Nodes, Table, place_ends
 from estimator.smoothing.keyframes.walks import STATES, dead_reckon, inverses, misfit, reckon, unit_motion
@@ -177,6 +178,9 @@ def _warm_chain() -> None:
         np.zeros(3),
         np.eye(3),
     )
+    power_costs(heard, one, one, 0.0, one)
+    told = ToldWay(0.0, np.zeros((1, 4)), np.zeros((1, STATES)), np.zeros((1, 4)), one)
+    turn_gains(np.ones((1, HEARD)), told, 1.0, np.ones((2, 2)))
     scattered(place, rows, slab, no)
     sigmas(rows.nominal, rows.nominal, rows)
     turned_by = turn_between(place[:, :2], place[:, :2])

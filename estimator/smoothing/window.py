@@ -31,6 +31,7 @@ from estimator.smoothing.images.heard_radios import heard_by
 from estimator.smoothing.images.image_starts import SAME_RAD
 from estimator.smoothing.images.likeliest_image import likeliest_image
 from estimator.smoothing.images.solutions import SLACKS_M
+from estimator.smoothing.images.turned_frames import may_have_turned, turned_frames
 from estimator.smoothing.images.unit_mounting import likeliest_mounting
 from estimator.smoothing.images.unseen_climbs import find_unseen_climb, hinted
 from estimator.smoothing.keyframes.layout import Layout
@@ -155,6 +156,7 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         start = _solved(begun, begun.layout.start(), solved_t)
         if hinted(begun, start):
             begun, start = find_unseen_climb(begun, start, partial(_problem, since=since), RESTING)
+        begun, start = turned_frames(begun, start, partial(_problem, since=since), RESTING)
         begun, start, others = likeliest_mounting(
             begun, start, partial(_problem, since=since), RESTING, solved_t
         )
@@ -186,7 +188,7 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         ledger.forget(state.window_t, ("pairs", "singles", "drops", "poses"))
         ledger.forget(state.window_t - STEPS_S, ("steps",))
     # Where one is likely to be wrong, look again soon which one.
-    state.suspected = state.suspected or causes.wrong
+    state.suspected = state.suspected or causes.wrong or may_have_turned(state)
     causes.correct(state)
     return True
 

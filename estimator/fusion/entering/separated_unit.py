@@ -90,7 +90,7 @@ def elsewhere_m2(node: NodeState, place_m: Array) -> Array:
         node: who.
         place_m: where he is shown: east, north (m).
     """
-    return doubt_m2(node.otherwise, place_m) + apart_m2(node, place_m)
+    return doubt_m2((*node.otherwise, *node.detours), place_m) + apart_m2(node, place_m)
 
 
 def apart_m2(node: NodeState, place_m: Array) -> Array:

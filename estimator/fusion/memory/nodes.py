@@ -67,6 +67,9 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         missed_s: for how long it has told nothing, all gaps since it last told a whole stride.
         placed_t: epoch of the newest range or fix by which its bearer was followed while it was silent (s).
         cadence: how its unit reports, of displacements of which it does not say since when they are.
+        detours: where it may be instead because its unit's frame may have turned on the way.
+        power_cost: what a power that it hears has cost at least since it was last asked in vain whether that
+            frame has turned (log likelihood).
         walk_factors: learned variances of its unit over the assumed ones: of displacements, of its heading.
     """
 
@@ -111,6 +114,8 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     missed_s: float = 0.0
     cadence: Cadence = Cadence()
     placed_t: float = -math.inf
+    detours: tuple[Alternative, ...] = ()
+    power_cost: float = -math.inf
 
     @property
     def position(self) -> Variable:

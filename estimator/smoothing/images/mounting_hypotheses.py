@@ -55,7 +55,7 @@ def hypotheses(
         anew: also with everybody where his own unit has led him from the beginning: the solution may have
             bent the good ones to a wrong one.
     """
-    plain = _unlearned(state)
+    plain = unlearned(state)
     wrong = [number for number in numbers if mounting_of(state.life(number)) != RIGHT]
     tried: list[dict[int, Mounting]] = [{}, *({number: RIGHT} for number in wrong)]
     for number in numbers:
@@ -117,7 +117,7 @@ def _rested(problem: Problem, x: Array, resting: float) -> Solution | None:
         return None
 
 
-def _unlearned(state: FusionState) -> FusionState:
+def unlearned(state: FusionState) -> FusionState:
     """A copy in which nothing is known of how noisy units and radios are: a wrong world has made it."""
     other = state.copy()
     other.noise = {}
