@@ -17,7 +17,7 @@ from estimator.smoothing.images.alternatives import Mode
 from estimator.smoothing.images.unit_mounting import likeliest_mounting
 from estimator.smoothing.images.unseen_climbs import find_unseen_climb
 from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.learning.delays import CLEARER, RARE, delays, distrust, doubted
+from estimator.smoothing.learning.delays import CLEARER, ODDS, RARE, delays, distrust, doubted, trust_dropped
 from estimator.smoothing.learning.range_noise import learn_ranging
 from estimator.smoothing.learning.unit_noise import learn
 from estimator.smoothing.learning.wrong_steps import withdraw
@@ -48,7 +48,9 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solution, list[Mode]]:
     technology is calibrated the first pass has judged. The same walls, met again and again for hours, look
     like a scale that is surer and surer.
 
-    Where a radio turns out to be off, everything is solved anew with a bias of its own.
+    Where a radio turns out to be off, everything is solved anew with a bias of its own. Those of breadcrumbs
+    are trusted again first: for the first pass, one that was kicked and is then ranged from one side only has
+    an antenna delay.
 
     Args:
         state: the fusion after all readings, with a complete ledger; the solution's may be a copy of it.
@@ -57,12 +59,15 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solution, list[Mode]]:
         The problem, its solution, and others by how units may be worn.
     """
     sort_by_walk(state)
+    again = trust_dropped(state)
     problem, solved = _solved(state)
     for _ in range(DELAYS):
         judged = problem.solve(solved.x, iterations=0)
         judged.chain.reduce()
         other = ask(problem, judged).odds
-        found = doubted(delays(problem, judged), max(GAIN, other + CLEARER - RARE))
+        asked, rival = delays(problem, judged), other + CLEARER - RARE
+        found = doubted([one for one in asked if one.radio in again], max(ODDS, rival))
+        found = found or doubted(asked, max(GAIN, rival))
         if not found:
             break
         state = problem.layout.state

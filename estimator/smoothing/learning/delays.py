@@ -93,6 +93,32 @@ def distrust(state: FusionState, radios: list[Delay]) -> None:
             f"{technology} ranges of {name} are off by {bias_m:+.1f} m: its antenna delay is not calibrated"
         )
         state.say("outlier", state.newest_t, name, text)
+    _tell_apart(state)
+    state.due = True
+
+
+def trust_dropped(state: FusionState) -> set[Radio]:
+    """Take back that radios are off which stand where nobody has told: a kick may have seemed a delay.
+
+    Args:
+        state: the fusion, changed in place; nothing has left its window.
+
+    Returns:
+        These radios.
+    """
+    dropped = set[Radio]()
+    for radio in state.delayed:
+        node = state.nodes[radio[1]]
+        if not node.moving and node.role not in ("base", "anchor") and node.absolute.believed_m is None:
+            dropped.add(radio)
+    state.delayed = {radio: None for radio in state.delayed if radio not in dropped}
+    if dropped:
+        _tell_apart(state)
+    return dropped
+
+
+def _tell_apart(state: FusionState) -> None:
+    """Let the ledger's ranges count as what they do by the radios that are not trusted now."""
     pairs = state.ledger.table("pairs").copy()
     ranges = np.flatnonzero(pairs[:, 1] == RANGE)
     for source, a, b in np.unique(pairs[ranges][:, [6, 2, 3]].astype(np.intp), axis=0).tolist():
@@ -110,7 +136,6 @@ def distrust(state: FusionState, radios: list[Delay]) -> None:
         pairs[mine, 6] = state.source(name)
         technology_states(state, name)
     state.ledger.replace("pairs", pairs)
-    state.due = True
 
 
 def delay_odds(problem: Problem, solved: Solution) -> dict[str, float]:

@@ -10,9 +10,13 @@ from estimator.estimate import TrackPoint
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
+from estimator.measurements.drop import Drop
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.trackers.batch import BatchSmoother
+from estimator.smoothing.learning.delays import distrust
+from estimator.smoothing.learning.radios import Delay
+from estimator.smoothing.whole import first_pass, solve_whole
+from estimator.trackers.batch import BatchSmoother, in_order
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import SURE, outside
 
@@ -122,6 +126,28 @@ def test_looking_back_nobody_is_thought_to_have_been_elsewhere(delays_m: dict[st
         readings, ways = world(seed, delays_m)
         track = BatchSmoother().smooth(readings)["ff0"]
         assert wrong_s(track, ways["ff0"]) == 0
+
+
+def dropped(seed: int, delay_m: float = 0.0) -> World:
+    """The same between four anchors; he drops a breadcrumb, all ranges of which are off by `delay_m`."""
+    readings, ways = world(seed, {})
+    chance, at = np.random.default_rng(seed), np.array([*ways["ff0"][20], 0.2])
+    readings += [Node(t=20.0, node="b0", role="breadcrumb"), Drop(t=20.0, node="b0", by="ff0")]
+    for second in range(21, SECONDS + 1):
+        far_m = float(np.linalg.norm([*(ways["ff0"][second] - at[:2]), UP_M - at[2]])) + delay_m
+        range_m = abs(far_m + chance.normal(0.0, RANGE_SIGMA_M))
+        readings.append(Range(t=float(second), a="ff0", b="b0", range_m=range_m, technology="uwb"))
+    return World(sorted(readings, key=lambda r: r.t), ways)
+
+
+@pytest.mark.parametrize("delay_m", [0.0, 2.0])
+def test_looking_back_a_breadcrumb_is_trusted_again_unless_all_says_that_it_is_off(delay_m: float) -> None:
+    for seed in SEEDS:
+        state = first_pass(in_order(dropped(seed, delay_m).readings))
+        if ("uwb", "b0") not in state.delayed:
+            distrust(state, [Delay(("uwb", "b0"), 0.0, 0.0, True, 0.0)])
+        problem, *_ = solve_whole(state)
+        assert list(problem.layout.state.delayed) == ([("uwb", "b0")] if delay_m else [])
 
 
 def test_good_radios_are_trusted() -> None:
