@@ -56,6 +56,7 @@ from estimator.smoothing.learning.delay_scores import (
 from estimator.smoothing.learning.unit_noise import noise_scores
 from estimator.smoothing.learning.wrong_steps import disturbance_covariance, gains
 from estimator.smoothing.problem.gauge_turn import moved_from, turn_between
+from estimator.smoothing.readings.bodies import ahead
 from estimator.smoothing.readings.curvature import add_curvature
 from estimator.smoothing.readings.linearisation import (
     ANY,
@@ -150,10 +151,9 @@ def _warm_chain() -> None:
     )
     heard, read, laid = (np.zeros((1, len(COLUMNS[name]))) for name in ("pairs", "singles", "drops"))
     found = window_readings(LedgerRows(heard, read, laid), 0.0, ground, pair, no, slab)
+    ahead(heard, slab, ground, no, states, place)
     rows = found.rows
-    readings = Readings(
-        slab, one, one, triple, np.zeros((1, 2)), end, end, slab, one, pair, one, end, end, end, slab
-    )
+    readings = Readings(slab, one, one, triple, one, end, end, slab, one, pair, one, end, end, end, slab)
     residuals(readings, x)
     jacobian = np.zeros((5, ANY))
     jacobians(readings, x, jacobian)

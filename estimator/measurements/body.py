@@ -1,7 +1,5 @@
 """What a bearer's body does to a reading of his radio: how far ahead of him the other one lies."""
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 
@@ -9,16 +7,8 @@ NEAR_M = 1.0
 """What is nearer is hardly ahead or behind."""
 
 
-class Ahead(NamedTuple):
-    """How far ahead of its bearer another radio lies, and the derivatives by the way to it."""
-
-    cosine: float
-    by_east: float
-    by_north: float
-
-
 @njit(cache=True)
-def ahead_of(faced_e: float, faced_n: float, east_m: float, north_m: float) -> Ahead:
+def ahead_of(faced_e: float, faced_n: float, east_m: float, north_m: float) -> float:
     """Cosine of the angle between where a bearer faces and where another radio lies; less of one near him.
 
     Args:
@@ -27,9 +17,5 @@ def ahead_of(faced_e: float, faced_n: float, east_m: float, north_m: float) -> A
         east_m: way to the other radio (m).
         north_m: the same, north (m).
     """
-    squared = east_m * east_m + north_m * north_m + NEAR_M * NEAR_M
-    far_m = np.sqrt(squared)
-    cosine = (faced_e * east_m + faced_n * north_m) / far_m
-    by_east = faced_e / far_m - cosine * east_m / squared
-    by_north = faced_n / far_m - cosine * north_m / squared
-    return Ahead(cosine, by_east, by_north)
+    far_m = np.sqrt(east_m * east_m + north_m * north_m + NEAR_M * NEAR_M)
+    return float((faced_e * east_m + faced_n * north_m) / far_m)

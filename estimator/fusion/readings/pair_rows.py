@@ -8,7 +8,6 @@ from numba import njit
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
-from estimator.fusion.entering.technologies import BODY
 from estimator.fusion.learned import link_correlation
 from estimator.fusion.learned.noise import link_sigma, through_sigma
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, COLUMNS, RANGE, RSSI
@@ -152,10 +151,15 @@ def fill(
         if unsure_m > 0.0 and technology[KIND] != RSSI:
             sigma = math.hypot(sigma, unsure_m)
             source = link = -1.0
-    value, states = pair[VALUE], int(technology[START])
-    if states >= 0:
-        value -= x[states + BODY] * body(kind_of(technology), a, b, at_a, at_b, x)
-    row[rows.KIND], row[rows.VALUE], row[rows.CONSTANT] = kind_of(technology), value, pair[CONSTANT]
+    kind, ahead = kind_of(technology), 0.0
+    if technology[START] >= 0 and kind != BEARING:
+        ahead = ahead_between(kind, a, b, at_a, at_b, x)
+    row[rows.KIND], row[rows.VALUE], row[rows.CONSTANT], row[rows.AHEAD] = (
+        kind,
+        pair[VALUE],
+        pair[CONSTANT],
+        ahead,
+    )
     row[rows.A], row[rows.B], row[rows.EXTRA] = a[recent_places.START], b[recent_places.START], extra
     row[rows.SIGMA], row[rows.NOMINAL] = sigma, pair[SIGMA]
     row[rows.OUTLIERS], row[rows.SHIFT] = technology[OUTLIERS], technology[SHIFT]
@@ -165,8 +169,8 @@ def fill(
 
 
 @njit(cache=True, error_model="numpy")
-def body(kind: int, a: Array, b: Array, at_a: Vector3, at_b: Vector3, x: Array) -> float:
-    """What a reading is off by for each metre or dB that bearers' bodies do.
+def ahead_between(kind: int, a: Array, b: Array, at_a: Vector3, at_b: Vector3, x: Array) -> float:
+    """How far ahead of its bearer the other radio lies, of a range how far behind, as a cosine.
 
     Args:
         kind: of the reading.
@@ -183,7 +187,7 @@ def body(kind: int, a: Array, b: Array, at_a: Vector3, at_b: Vector3, x: Array) 
     if start_b >= 0:
         way_e, way_n = way_e + x[start_b], way_n + x[start_b + 1]
     one, other = recent_places.faced(a, x), recent_places.faced(b, x)
-    cosine = ahead_of(one[0] - other[0], one[1] - other[1], way_e, way_n).cosine
+    cosine = ahead_of(one[0] - other[0], one[1] - other[1], way_e, way_n)
     return -cosine if kind == RANGE else cosine
 
 

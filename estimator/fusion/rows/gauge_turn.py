@@ -48,7 +48,7 @@ def undo_turn(
 
     Args:
         table: of m readings.
-        columns: which numbers each depends on, m × 8.
+        columns: which numbers each depends on, m × 9.
         found: what they have led to.
         before: x₀, where they were linearised last, n.
         matrix: L of what was known, n × n or larger, changed: said at the new estimate.
@@ -59,7 +59,7 @@ def undo_turn(
         base_m: east and north of the base, 2 (m).
 
     Returns:
-        Derivatives of the readings at the new estimate, that know no turn by where a node stood, m × 8.
+        Derivatives of the readings at the new estimate, that know no turn by where a node stood, m × 9.
     """
     n, jacobian, residual = len(x), np.empty(columns.shape), np.empty(len(table))
     pivot_m = pivot(matrix, reference, changed, base_m)
@@ -102,7 +102,7 @@ def aside(row: Array, own: Array, end: int) -> float:
 
     Args:
         row: of the reading.
-        own: its derivatives, 8.
+        own: its derivatives, 9.
         end: which one.
     """
     first, moment = ENDS[end]
@@ -115,8 +115,8 @@ def hold_aside(row: Array, own_columns: Indices, own: Array, x: Array, pivot_m: 
 
     Args:
         row: of the reading.
-        own_columns: which numbers it depends on, 8.
-        own: its derivatives, 8, changed.
+        own_columns: which numbers it depends on, 9.
+        own: its derivatives, 9, changed.
         x: the estimate, n.
         pivot_m: what the map is turned about, 2 (m).
     """

@@ -34,7 +34,7 @@ class Minimum(NamedTuple):
             definite.
         x: the estimate of the numbers that they depend on, k.
         before: where they were linearised last, k.
-        jacobian: derivatives by which they were solved last, m × 8.
+        jacobian: derivatives by which they were solved last, m × 9.
         information: what each has told by these, m.
         residual: z − h(x) of each, m.
         predicted: variance of each prediction by the state's covariance, m.
@@ -151,11 +151,11 @@ def widen(
 
     Args:
         table: of m readings, those of one kind one after the other.
-        columns: which numbers each depends on, m × 8.
-        jacobian: its derivatives by them, m × 8.
+        columns: which numbers each depends on, m × 9.
+        jacobian: its derivatives by them, m × 9.
         residual: z − h(x) of each, m.
         x: the estimate, n.
-        covariance: of these, m × 8 × 8, see `joint`.
+        covariance: of these, m × 9 × 9, see `joint`.
         wider: takes the variances, m; 0 for other kinds, and for a kind where all are negligible.
 
     Returns:

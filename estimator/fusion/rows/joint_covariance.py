@@ -2,7 +2,7 @@
 
 A tick's readings share their numbers: what each of these has to do with the others is found once, and all
 that is asked of a reading (how unsure its prediction is, how far aside of its line of sight, how much
-farther) is then a form of eight numbers.
+farther) is then a form of nine numbers.
 """
 
 from typing import NamedTuple
@@ -24,7 +24,7 @@ class TouchedNumbers(NamedTuple):
     Attributes:
         used: they are, k, ascending.
         others: all others, ascending.
-        at: which of the first each reading depends on, m × 8; −1 where there is none.
+        at: which of the first each reading depends on, m × 9; −1 where there is none.
         hubs: those of them of which it is asked what they have to do with any other one.
         hub: number of each among the hubs, k; −1: of it no more is asked than of its own block.
     """
@@ -44,7 +44,7 @@ def numbers_of(columns: Indices, n: int) -> TouchedNumbers:
     few who hear many radios are enough.
 
     Args:
-        columns: which numbers each reading depends on, m × 8; see `rows.columns_of`.
+        columns: which numbers each reading depends on, m × 9; see `rows.columns_of`.
         n: how many numbers there are.
     """
     m = len(columns)
@@ -83,7 +83,7 @@ def joint(factor: Array, unscale: Array, numbers: TouchedNumbers, own: Array) ->
         factor: of the information about them, as `factorised` leaves it, k × k.
         unscale: the same, k.
         numbers: of m readings.
-        own: takes the covariances, m × 8 × 8; where a reading has no number it stays as it is.
+        own: takes the covariances, m × 9 × 9; where a reading has no number it stays as it is.
     """
     k = len(unscale)
     halves, blocks = np.zeros((k, k)), np.zeros((BLOCK, k))
@@ -121,8 +121,8 @@ def variances(own: Array, jacobian: Array, found: Array) -> None:
     """Variance of a linear form of the numbers of each reading, such as its prediction, H Σ Hᵀ.
 
     Args:
-        own: covariances, see `joint`, m × 8 × 8.
-        jacobian: H of each, m × 8; 0 where there is no number.
+        own: covariances, see `joint`, m × 9 × 9.
+        jacobian: H of each, m × 9; 0 where there is no number.
         found: takes the variances, m.
     """
     for r in range(len(found)):

@@ -26,11 +26,11 @@ def sight_offsets(
     """How far aside of the line of sight, and how much farther, places lead, over its length.
 
     Args:
-        columns: which numbers each of m powers depends on, m × 8.
-        jacobian: its derivatives by them, m × 8.
+        columns: which numbers each of m powers depends on, m × 9.
+        jacobian: its derivatives by them, m × 9.
         x: the estimate, n.
-        aside: takes the derivatives of what is aside on the ground plane, over the length, m × 8 (1/m).
-        farther: takes those of the length, over the length, m × 8 (1/m).
+        aside: takes the derivatives of what is aside on the ground plane, over the length, m × 9 (1/m).
+        farther: takes those of the length, over the length, m × 9 (1/m).
         slopes_db: takes what a power falls by with the natural logarithm of the length, m (dB); nil where it
             does not count, as of radios that lie on each other.
     """

@@ -20,14 +20,14 @@ class Prediction(NamedTuple):
 
     Attributes:
         solvable: L is positive definite; else nothing is known.
-        columns: which numbers each depends on, m × 8; −1 where there is none.
+        columns: which numbers each depends on, m × 9; −1 where there is none.
         numbers: the numbers of all readings.
         x: these, k.
         prior: L without the others, k × k.
         pull: b without the others, k.
-        jacobian: derivatives of the predictions by the numbers of each, m × 8.
+        jacobian: derivatives of the predictions by the numbers of each, m × 9.
         residual: z − h(x), m.
-        own: covariance of the numbers of each, m × 8 × 8.
+        own: covariance of the numbers of each, m × 9 × 9.
         predicted: variance of each prediction, m.
         factor: of L with the others first, as `halved` leaves it, n × n.
         unscale: the same, n.

@@ -26,10 +26,10 @@ def sight_turns(
 
     Args:
         table: of m ranges, see `rows.Row`.
-        columns: which numbers each depends on, m × 8.
-        jacobian: its derivatives by them, m × 8.
+        columns: which numbers each depends on, m × 9.
+        jacobian: its derivatives by them, m × 9.
         residual: z − h(x) of each, m.
-        aside: takes the derivatives of its line's direction, m × 8 (rad/m).
+        aside: takes the derivatives of its line's direction, m × 9 (rad/m).
         levers_m: takes how far aside a turn leads, as seen along the line, m (m/rad).
     """
     aside[:], levers_m[:] = 0.0, 0.0

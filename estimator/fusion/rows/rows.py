@@ -18,8 +18,8 @@ from estimator.measurements.rssi import predict_rssi
 
 ONE = -1
 """Kind of a reading of one number; the others have the kinds of pairs in the ledger."""
-WIDTH = 8
-"""Numbers that a reading depends on at most: two positions, and two states of a technology."""
+WIDTH = 9
+"""Numbers that a reading depends on at most: two positions, and three states of a technology."""
 
 
 class Single(NamedTuple):
@@ -71,6 +71,7 @@ class Row(NamedTuple):
         b_e: where the other end stood; of one number, how much less it is for each second that it is late.
         b_n: the same, north.
         b_u: the same, up.
+        ahead: how far ahead of its bearer the other radio lies, of a range how far behind, as a cosine.
     """
 
     kind: int
@@ -92,11 +93,13 @@ class Row(NamedTuple):
     b_e: float = 0.0
     b_n: float = 0.0
     b_u: float = 0.0
+    ahead: float = 0.0
 
 
 FIELDS = len(Row._fields)
 KIND, A, VALUE, SIGMA, OUTLIERS, SHIFT, SPREAD, NOMINAL, B, EXTRA, CONSTANT, SOURCE, LINK, A_E = range(14)
 B_E = A_E + 3
+AHEAD = B_E + 3
 
 
 def table_of(starts: Mapping[Variable, int], singles: Sequence[Single], pairs: Array) -> Array:
@@ -139,7 +142,7 @@ def table_from(rows: Sequence[Sequence[float]], width: int) -> Array:
 
 @njit(cache=True, error_model="numpy")
 def columns_of(table: Array) -> Indices:
-    """Which numbers each reading depends on, m × 8: of a, b and extra; −1 where there is none."""
+    """Which numbers each reading depends on, m × 9: of a, b and extra; −1 where there is none."""
     m = len(table)
     columns = np.full((m, WIDTH), -1)
     for r in range(m):
@@ -152,6 +155,8 @@ def columns_of(table: Array) -> Indices:
             if start >= 0:
                 for i in range(length):
                     columns[r, at + i] = start + i
+        if table[r, AHEAD] != 0.0:
+            columns[r, 8] = int(table[r, EXTRA]) + 2
     return columns
 
 
@@ -161,13 +166,13 @@ def linearise(table: Array, columns: Indices, x: Array, jacobian: Array, residua
 
     Args:
         table: of m readings.
-        columns: which numbers each depends on, m × 8.
+        columns: which numbers each depends on, m × 9.
         x: the estimate, n.
-        jacobian: takes the derivatives, m × 8; 0 where there is no number.
+        jacobian: takes the derivatives, m × 9; 0 where there is no number.
         residual: takes z − h(x), m.
     """
     m = len(table)
-    a, b, states = np.empty((m, 3)), np.empty((m, 3)), np.zeros((2, m))
+    a, b, states = np.empty((m, 3)), np.empty((m, 3)), np.zeros((3, m))
     for r in range(m):
         for i in range(3):
             a[r, i], b[r, i] = table[r, A_E + i], table[r, B_E + i]
@@ -180,6 +185,8 @@ def linearise(table: Array, columns: Indices, x: Array, jacobian: Array, residua
             states[0, r] += x[columns[r, 6]]
         if columns[r, 7] >= 0:
             states[1, r] = x[columns[r, 7]]
+        if columns[r, 8] >= 0:
+            states[2, r] = table[r, AHEAD] * x[columns[r, 8]]
     first = 0
     while first < m:
         kind, last = table[first, KIND], first + 1
@@ -201,11 +208,12 @@ def linearise(table: Array, columns: Indices, x: Array, jacobian: Array, residua
                 got = predict_rssi(table[first:last, VALUE], own, others, one, two)
             else:
                 got = predict_bearing(own, others, one)
-            off = table[first:last, VALUE] - got.predicted
+            off = table[first:last, VALUE] - got.predicted - states[2, first:last]
             residual[first:last] = wrap(off) if kind == BEARING else off
             jacobian[first:last, :3] = got.by_a
             jacobian[first:last, 3:6] = got.by_b
-            jacobian[first:last, 6:] = got.by_extra
+            jacobian[first:last, 6:8] = got.by_extra
+            jacobian[first:last, 8] = table[first:last, AHEAD]
             for r in range(first, last):
                 for i in range(WIDTH):
                     if columns[r, i] < 0:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from copy import copy
+from functools import cached_property
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -119,6 +120,7 @@ class Layout:
             until: the keyframe.
         """
         other = copy(self)
+        vars(other).pop("_thought", None)
         other.grid, other.times = self.grid[: until + 1], self.times[: until + 1, list(walks)]
         some = [self.walks[i] for i in walks]
         other.walks = [walk._replace(last=min(walk.last, until)) for walk in some]
@@ -142,7 +144,11 @@ class Layout:
         return len(self.grid)
 
     def start(self) -> Array:
-        """The unknowns as they are thought to be: keyframes, then the border, flat."""
+        """The unknowns as they were thought to be when first asked: keyframes, then the border, flat."""
+        return self._thought.copy()
+
+    @cached_property
+    def _thought(self) -> Array:
         x = np.zeros(self.length * self.width + self.border)
         keyframes = x[: self.length * self.width].reshape(self.length, self.width)
         poses = self.state.ledger.table("poses")

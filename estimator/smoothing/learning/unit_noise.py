@@ -205,8 +205,8 @@ def judge_bodies(state: FusionState, key: Key, estimate: float, variance: float)
     narrow, wide = body_sigmas(name, powers)
     told = uncalibrated(sigma, estimate, variance, narrow, wide, physics.BODIES)
     information, product = told_of(sigma, estimate, variance)
-    if abs(product) > FARTHEST * wide * information:
-        # No body does so much: it is a clock, or something else that looks like one.
+    if product**2 > (FARTHEST * information) ** 2 * wide**2 + FARTHEST**2 * information:
+        # Clearly more than any body does: it is a clock, or something else that looks like one.
         told = 0.0
     state.bodies[name] = Calibration(told, narrow, sigma, wide)
     state.due = state.due or state.body_sigma(name, powers) != sigma

@@ -12,7 +12,6 @@ from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import bearing_at
-from estimator.measurements.body import ahead_of
 from estimator.measurements.range import range_at
 from estimator.measurements.rssi import rssi_at
 from estimator.smoothing.keyframes.ends import FIXED, UNIT, Table, faced, place_end
@@ -29,7 +28,7 @@ class Readings(NamedTuple):
         value: what was measured, m.
         constant: known part of a power (dB), or heading that a bearing counts from (rad), m.
         extra: where its technology's three numbers are in the flat unknowns, m × 3; 0 if it has none.
-        facing: how bearers' bodies lie between its ends, m × 2, see `bodies`.
+        ahead: how far ahead of its bearer the other radio lies, of ranges how far behind, m, see `bodies`.
         a: first ends of the pairs.
         b: second ends.
         axis: what a single tells of its node: 0 to 2 the place, above it the number itself, n.
@@ -47,7 +46,7 @@ class Readings(NamedTuple):
     value: Array
     constant: Array
     extra: Integers
-    facing: Array
+    ahead: Array
     a: Table
     b: Table
     axis: Integers
@@ -69,20 +68,11 @@ class PairPrediction(NamedTuple):
     by_u: float
     by_first: float
     by_second: float
-    by_body: float
 
 
 @njit(cache=True)
 def predict_pair(
-    kind: int,
-    value: float,
-    constant: float,
-    first: float,
-    second: float,
-    body: float,
-    facing: Array,
-    a: Array,
-    b: Array,
+    kind: int, value: float, constant: float, first: float, second: float, a: Array, b: Array
 ) -> PairPrediction:
     """One pair with its ends at a and b, 3 each (m).
 
@@ -92,25 +82,20 @@ def predict_pair(
         constant: see `Readings`; of a bearing, all that it counts from (rad).
         first: first state of its technology.
         second: second one.
-        body: what a bearer's body does to it (m or dB).
-        facing: see `Readings`, 2.
         a: where it was measured.
         b: what was measured.
     """
     e, n, u = a[0] - b[0], a[1] - b[1], a[2] - b[2]
     if kind >= BEARING:
         found = bearing_at(-e, -n, constant)
-        return PairPrediction(found.predicted, found.by_e, found.by_n, 0.0, -1.0, 0.0, 0.0)
+        return PairPrediction(found.predicted, found.by_e, found.by_n, 0.0, -1.0, 0.0)
     squared = e * e + n * n + u * u
     if kind == RANGE:
         along = range_at(squared, first, second)
     else:
         along = rssi_at(value, squared, first + constant, second)
     by_e, by_n, by_u = e * along.by_a, n * along.by_a, u * along.by_a
-    seen = ahead_of(facing[0], facing[1], e, n)
-    by_e, by_n = by_e + body * seen.by_east, by_n + body * seen.by_north
-    predicted = along.predicted + body * seen.cosine
-    return PairPrediction(predicted, by_e, by_n, by_u, along.by_first, along.by_second, seen.cosine)
+    return PairPrediction(along.predicted, by_e, by_n, by_u, along.by_first, along.by_second)
 
 
 @njit(cache=True)
@@ -136,14 +121,13 @@ def residuals(readings: Readings, x: Array) -> Array:
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
     numbers = faced(x, readings.headings)
-    value, constants, facing = readings.value, readings.constant, readings.facing
+    value, constants, ahead = readings.value, readings.constant, readings.ahead
     for i in range(m):
         place_end(ends_a, i, numbers, a, turned)
         place_end(ends_b, i, numbers, b, turned)
         constant = counted_from(kinds[i], constants[i], ends_a, i, x)
-        first, second, body = x[extra[i, 0]], x[extra[i, 1]], x[extra[i, 2]]
-        seen = predict_pair(kinds[i], value[i], constant, first, second, body, facing[i], a, b)
-        found[i] = value[i] - seen.predicted
+        seen = predict_pair(kinds[i], value[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
+        found[i] = value[i] - seen.predicted - ahead[i] * x[extra[i, 2]]
     on, by, crumb = readings.on, readings.by, readings.crumb
     for i in range(n):
         axis = readings.axis[i]
@@ -177,15 +161,14 @@ def jacobians(readings: Readings, x: Array, found: Array) -> None:
     slope = np.empty(3)
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
     numbers = faced(x, readings.headings)
-    value, constants, facing = readings.value, readings.constant, readings.facing
+    value, constants, ahead = readings.value, readings.constant, readings.ahead
     for i in range(m):
         kind = kinds[i]
         by_a[:], by_b[:] = 0.0, 0.0
         place_end(ends_a, i, numbers, a, by_a)
         place_end(ends_b, i, numbers, b, by_b)
         constant = counted_from(kind, constants[i], ends_a, i, x)
-        first, second, body = x[extra[i, 0]], x[extra[i, 1]], x[extra[i, 2]]
-        seen = predict_pair(kind, value[i], constant, first, second, body, facing[i], a, b)
+        seen = predict_pair(kind, value[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
         if ends_a.kind[i] != FIXED:
             slope[0], slope[1], slope[2] = seen.by_e, seen.by_n, seen.by_u
             chain_rule(slope, by_a, found[i, :6])
@@ -193,7 +176,7 @@ def jacobians(readings: Readings, x: Array, found: Array) -> None:
             slope[0], slope[1], slope[2] = -seen.by_e, -seen.by_n, -seen.by_u
             chain_rule(slope, by_b, found[i, 6:12])
         if kind < BEARING:
-            found[i, 12], found[i, 13], found[i, 14] = seen.by_first, seen.by_second, seen.by_body
+            found[i, 12], found[i, 13], found[i, 14] = seen.by_first, seen.by_second, ahead[i]
         elif kind == BODY_BEARING and ends_a.kind[i] == UNIT:
             found[i, 3] += seen.by_first
     on, by, crumb = readings.on, readings.by, readings.crumb

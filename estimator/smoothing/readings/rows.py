@@ -14,11 +14,10 @@ from estimator.fusion.readings import echoes
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import wrap
-from estimator.measurements.body import NEAR_M
 from estimator.smoothing.keyframes.ends import FREE, UNIT, ground_of, place_ends
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.unknowns import Unknowns
-from estimator.smoothing.readings.bodies import facing_of
+from estimator.smoothing.readings.bodies import ahead_in
 from estimator.smoothing.readings.fix_speeds import fix_speeds
 from estimator.smoothing.readings.linearisation import (
     ANY,
@@ -101,8 +100,8 @@ class Rows:
         self._inside, self._strongest, self._unsure_m2 = found.inside, found.strongest, found.unsure_m2
         self._bearings = found.bearings
         speeds = fix_speeds(self.singles, found.readings.off[:, 1], ledger.table("poses"))
-        facing = facing_of(layout, ground, self.pairs, self.slab)
-        self._readings = found.readings._replace(speed=speeds, facing=facing)
+        ahead = ahead_in(layout, ground, found.readings, self.pairs, self.slab)
+        self._readings = found.readings._replace(speed=speeds, ahead=ahead)
 
     def of(self, numbers: Sequence[int]) -> NDArray[np.bool_]:
         """Which of them tell of some walks, or of what these have dropped, m.
@@ -245,12 +244,7 @@ class Rows:
 
     def bodies(self, x: Array) -> Array:
         """What bearers' bodies are thought to do to each pair at an estimate x, flat, m (m or dB)."""
-        way = separations(self._readings, x)
-        east, north = way[:, 0], way[:, 1]
-        facing, body = self._readings.facing, x[self._readings.extra[:, 2]]
-        found: Array = (
-            body * (facing[:, 0] * east + facing[:, 1] * north) / np.sqrt(east**2 + north**2 + NEAR_M**2)
-        )
+        found: Array = self._readings.ahead * x[self._readings.extra[:, 2]]
         return found
 
     def linearise(self, x: Array) -> Linearised:

@@ -182,7 +182,7 @@ def read(
         pairs[:, 4].copy(),
         pairs[:, 7].copy(),
         at,
-        np.zeros((len(pairs), 2)),
+        np.zeros(len(pairs)),
         a.table,
         b.table,
         numbers(singles, 2),

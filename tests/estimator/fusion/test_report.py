@@ -23,7 +23,7 @@ NARROW = physics.RANGE_SCALE_SIGMA
 
 
 def measured(seed: int) -> tuple[Array, Array]:
-    """Kirchhoff matrix and b of a place, a scale, a bias and bodies, by what some readings say of all of them."""
+    """Kirchhoff matrix and b of a place and three numbers of radios, by what readings say of all of them."""
     chance = np.random.default_rng(seed)
     rows = chance.normal(0.0, 20.0, (12, 6))
     return rows.T @ rows, rows.T @ chance.normal(0.0, 1.0, 12) + 200.0 * rows[0]

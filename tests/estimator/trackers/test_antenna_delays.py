@@ -15,10 +15,11 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.smoothing.learning.delays import distrust
 from estimator.smoothing.learning.radios import Delay
-from estimator.smoothing.whole import first_pass, solve_whole
-from estimator.trackers.batch import BatchSmoother, in_order
+from estimator.smoothing.whole import solve_whole
+from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import SURE, outside
+from tests.estimator.smoothing.windows import fused
 
 SECONDS, SEEDS = 150, (41, 42, 43)
 RADIOS, UP_M, RANGE_SIGMA_M = 4, 1.0, 0.15
@@ -143,7 +144,7 @@ def dropped(seed: int, delay_m: float = 0.0) -> World:
 @pytest.mark.parametrize("delay_m", [0.0, 2.0])
 def test_looking_back_a_breadcrumb_is_trusted_again_unless_all_says_that_it_is_off(delay_m: float) -> None:
     for seed in SEEDS:
-        state = first_pass(in_order(dropped(seed, delay_m).readings))
+        state = fused(dropped(seed, delay_m).readings)
         if ("uwb", "b0") not in state.delayed:
             distrust(state, [Delay(("uwb", "b0"), 0.0, 0.0, True, 0.0)])
         problem, *_ = solve_whole(state)

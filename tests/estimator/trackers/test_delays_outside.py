@@ -15,7 +15,7 @@ from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, SURE, outside
 
-SECONDS, SEEDS = 120, (51, 52, 53)
+SECONDS, SEEDS = 120, range(51, 57)
 HALF_M, UP_M, RANGE_SIGMA_M = 6.0, 1.0, 0.1
 ECHOES, ECHO_M = 0.05, 2.0
 

@@ -23,6 +23,7 @@ from estimator.fusion.rows.gauss_newton import (
 from estimator.fusion.rows.prediction import follow, predict
 from estimator.fusion.rows.rows import (
     A_E,
+    AHEAD,
     B_E,
     CONSTANT,
     FIELDS,
@@ -48,7 +49,7 @@ from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 
-N = 12
+N = 14
 """Two positions, the states of two technologies, and those of a unit, which has only two here."""
 
 
@@ -64,8 +65,8 @@ def some_table(chance: np.random.Generator, m: int) -> Array:
             continue
         extra, value, sigma, noise = {
             RANGE: (6, float(chance.uniform(0.0, 12.0)), 0.3, physics.RANGE_NOISE),
-            RSSI: (8, float(chance.uniform(-80.0, -40.0)), 6.0, physics.RSSI_NOISE),
-            BEARING: (10, float(chance.uniform(-3.0, 3.0)), 0.2, physics.BEARING_NOISE),
+            RSSI: (9, float(chance.uniform(-80.0, -40.0)), 6.0, physics.RSSI_NOISE),
+            BEARING: (12, float(chance.uniform(-3.0, 3.0)), 0.2, physics.BEARING_NOISE),
         }[kind]
         b = int(chance.choice([-1, 3]))
         pairs.append(
@@ -82,14 +83,14 @@ def some_table(chance: np.random.Generator, m: int) -> Array:
                 0,
                 0,
                 *chance.normal(0.0, 2.0, 6).tolist(),
-            )
+            )._replace(ahead=0.0 if kind == BEARING else float(chance.uniform(-1.0, 1.0)))
         )
     told = table_from(sorted(pairs), FIELDS)
     return table_of({Variable("position", "0"): 0, Variable("position", "1"): 3}, singles, told)
 
 
 def some_state(chance: np.random.Generator) -> tuple[Array, Array, Array]:
-    start = np.concatenate([chance.normal(0.0, 5.0, 6), [0.0, 0.1, -45.0, 2.2, 0.1, 0.0]])
+    start = np.concatenate([chance.normal(0.0, 5.0, 6), [0.0, 0.1, 0.2, -45.0, 2.2, 3.0, 0.1, 0.0]])
     half = chance.normal(0.0, 1.0, (N, 2 * N))
     return half @ half.T / 20.0, chance.normal(0.0, 0.3, N), start
 
@@ -99,7 +100,8 @@ def linearise_plainly(table: Array, columns: Indices, x: Array) -> tuple[Array, 
     here = x[np.maximum(columns, 0)] * used
     a, b = here[:, :3] + table[:, A_E : A_E + 3], here[:, 3:6] + table[:, B_E : B_E + 3]
     first, second, value = here[:, 6] + table[:, CONSTANT], here[:, 7].copy(), table[:, VALUE].copy()
-    jacobian, residual = np.zeros((len(table), 8)), value - here[:, 0]
+    body, ahead = table[:, AHEAD] * here[:, 8], table[:, AHEAD, None]
+    jacobian, residual = np.zeros((len(table), 9)), value - here[:, 0]
     jacobian[:, 0] = 1.0
     for kind, got in (
         (RANGE, predict_range(a, b, first, second)),
@@ -107,9 +109,9 @@ def linearise_plainly(table: Array, columns: Indices, x: Array) -> tuple[Array, 
         (BEARING, predict_bearing(a, b, first)),
     ):
         mine = table[:, KIND] == kind
-        off = value - got.predicted
+        off = value - got.predicted - body
         residual[mine] = (wrap(off) if kind == BEARING else off)[mine]
-        jacobian[mine] = np.concatenate([got.by_a, got.by_b, got.by_extra], axis=1)[mine]
+        jacobian[mine] = np.concatenate([got.by_a, got.by_b, got.by_extra, ahead], axis=1)[mine]
     return jacobian * used, residual
 
 
@@ -162,7 +164,7 @@ def descend_plainly(table: Array, prior: Array, pull: Array, start: Array, itera
     def logarithms(jacobian: Array, x: Array, information: Array) -> Array:
         covariance, found = np.linalg.inv(information), np.zeros(len(table))
         for r in np.flatnonzero(heard & (jacobian[:, 6] != 0.0)):
-            by_place, slope_db = jacobian[r, :3], 10.0 / np.log(10.0) * max(x[9], 0.5)
+            by_place, slope_db = jacobian[r, :3], 10.0 / np.log(10.0) * max(x[10], 0.5)
             across = np.array([-by_place[1], by_place[0], 0.0]) / np.hypot(*by_place[:2])
             aside, farther = np.zeros(N), np.zeros(N)
             aside[:3], farther[:3] = across * np.linalg.norm(by_place) / slope_db, by_place / slope_db

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from estimator.fusion.rows.joint_covariance import joint, numbers_of, variances
+from estimator.fusion.rows.rows import WIDTH
 from estimator.graph.dense import Array, Indices
 from estimator.graph.triangular import factorised
 
@@ -15,7 +16,7 @@ BREADCRUMBS, UNITS, TECHNOLOGY = (0, 3, 6), (12, 18), 24
 def heard(a: int, b: int) -> list[int]:
     """The numbers of a reading between two places; −1: an end that is fixed."""
     ends = [start + i if start >= 0 else -1 for start in (a, b) for i in range(3)]
-    return [*ends, TECHNOLOGY, TECHNOLOGY + 1]
+    return [*ends, TECHNOLOGY, TECHNOLOGY + 1, -1]
 
 
 COLUMNS: Indices = np.array(
@@ -24,7 +25,7 @@ COLUMNS: Indices = np.array(
         heard(BREADCRUMBS[1], UNITS[0]),
         heard(UNITS[0], UNITS[1]),
         heard(-1, BREADCRUMBS[2]),
-        [UNITS[1] + 2, -1, -1, -1, -1, -1, TECHNOLOGY, -1],
+        [UNITS[1] + 2, -1, -1, -1, -1, -1, TECHNOLOGY, -1, -1],
     ]
 )
 
@@ -38,7 +39,7 @@ def covariances() -> Array:
     """Of the numbers of each reading, from the information about those that are used alone."""
     numbers = numbers_of(COLUMNS, N)
     whole = np.linalg.inv(information())[np.ix_(numbers.used, numbers.used)]
-    k, own = len(numbers.used), np.zeros((len(COLUMNS), 8, 8))
+    k, own = len(numbers.used), np.zeros((len(COLUMNS), WIDTH, WIDTH))
     factor, unscale = np.zeros((k, k)), np.empty(k)
     assert factorised(np.linalg.inv(whole), factor, unscale)
     joint(factor, unscale, numbers, own)

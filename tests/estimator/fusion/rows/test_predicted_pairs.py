@@ -7,7 +7,7 @@ from estimator.fusion.learned import rival
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.rows.predicted_pairs import PredictedPairs, predict_pairs
 from estimator.fusion.rows.prediction import predict
-from estimator.fusion.rows.rows import Row, columns_of, linearise, table_of
+from estimator.fusion.rows.rows import WIDTH, Row, columns_of, linearise, table_of
 from estimator.graph.dense import Array, Indices
 
 UNIT, BREADCRUMB, OTHER_UNIT, TECHNOLOGY = 0, 3, 6, 9
@@ -47,10 +47,11 @@ def foretold(
 def test_variances_are_those_of_the_covariance() -> None:
     rows, covariance = table(ranged(UNIT, BREADCRUMB)), np.linalg.inv(information())
     told, own = foretold(rows, np.array([7.0]), np.array([UNIT]), NONE)
-    columns, jacobian, residual = columns_of(rows), np.empty((1, 8)), np.empty(1)
+    columns, jacobian, residual = columns_of(rows), np.empty((1, WIDTH)), np.empty(1)
     linearise(rows, columns, X, jacobian, residual)
     slope = np.zeros(len(X))
-    slope[columns[0]] = jacobian[0]
+    there = columns[0] >= 0
+    slope[columns[0, there]] = jacobian[0, there]
     np.testing.assert_allclose(told[0, rival.UNSURE], slope @ covariance @ slope)
     np.testing.assert_allclose(told[0, rival.OFF], residual[0])
     slope[:3] = 0.0
