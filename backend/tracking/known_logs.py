@@ -74,9 +74,11 @@ class KnownLogs:
         key = _key(head, of)
         known = self._kept.pop(key, None)
         if known is None or not _read_on(known, reader, head):
-            known = KnownLog(head)
-            _read_on(known, reader, head)
+            known = _read(reader, head)
         known.fold_ahead()
+        if known.heard.misdated():
+            self._drop(key)
+            return _read(reader, head)
         self._given_up.discard(key)
         self._keep(key, known)
         return known
@@ -138,6 +140,13 @@ def entries(reader: LogReader, head: Head, after: int = 0) -> Iterator[Decoded]:
             if batch.seq <= head.last_seq:
                 yield batch, readings
         after = block[-1][0].seq
+
+
+def _read(reader: LogReader, head: Head) -> KnownLog:
+    """A log up to a head's newest entry, nothing of it folded."""
+    known = KnownLog(head)
+    _read_on(known, reader, head)
+    return known
 
 
 def _read_on(known: KnownLog, reader: LogReader, head: Head) -> bool:

@@ -35,11 +35,12 @@ class Heard:
         self._until_t = -math.inf
         self._epochs = array("d")
         self._lifetimes: dict[str, tuple[float, float]] = {}
+        self._early: list[AnyFolded] = []
         self._waiting: list[AnyFolded] = []
 
     def __len__(self) -> int:
         """How many have been heard; raw samples count by pieces."""
-        return len(self._epochs) + len(self._waiting)
+        return len(self._early) + len(self._epochs) + len(self._waiting)
 
     def can_hear(self, readings: Sequence[AnyReading]) -> bool:
         """Whether they all tell of what is not folded yet. Where not, all is to be heard anew, in order."""
@@ -54,26 +55,33 @@ class Heard:
         self._waiting += in_pieces(readings)
 
     def fold_ahead(self, newest_t: float) -> None:
-        """Fold what is older than the lag.
+        """Fold what is older than the lag, but for what is of another day: its epoch is rather wrong.
 
         Args:
             newest_t: an epoch that is past, by a clock that can be trusted (s).
         """
         until_t = end_of_tick(newest_t - self._lag_s) - TICK_S
-        if until_t <= self._until_t:
+        if until_t <= self._until_t or (self._epochs and self._epochs[-1] <= newest_t - LONGEST_S):
+            # What was folded is of another day: nothing goes on from there.
             return
         self._waiting.sort(key=place_of)
-        ready = self._waiting[: bisect_left(self._waiting, until_t, key=UNTIL_T)]
-        del self._waiting[: len(ready)]
+        early = bisect_right(self._waiting, newest_t - LONGEST_S, key=UNTIL_T)
+        ready = self._waiting[early : bisect_left(self._waiting, until_t, key=UNTIL_T)]
+        self._early += self._waiting[:early]
+        del self._waiting[: early + len(ready)]
         self._pass.fold(ready)
         self._epochs.extend(map(UNTIL_T, ready))
         _extend(self._lifetimes, ready)
         self._until_t = until_t
 
     def misdated(self) -> bool:
-        """Whether something was folded whose epoch turns out to be wrong: all is to be heard anew."""
+        """Whether of what was folded, or left out, an epoch turns out to be wrong, or right after all.
+
+        Then all is to be heard anew, and nothing to be folded ahead.
+        """
         since_t, until_t = self._day()
-        return bool(self._epochs) and not since_t < self._epochs[0] <= self._epochs[-1] < until_t
+        wrong = bool(self._epochs) and not since_t < self._epochs[0] <= self._epochs[-1] < until_t
+        return wrong or any(reading.until_t > since_t for reading in self._early)
 
     def ended(self) -> tuple[FusionState, Lifetimes]:
         """What is known where nothing more comes: the state after the first pass, and who was heard when.
@@ -89,13 +97,12 @@ class Heard:
 
     def _day(self) -> tuple[float, float]:
         """Epochs between which the incident lies (s): a day to both sides of its middle reading's."""
-        middle = len(self) // 2
-        if middle < len(self._epochs):
-            middle_t = self._epochs[middle]
-        elif self._waiting:
-            middle_t = sorted(map(UNTIL_T, self._waiting))[middle - len(self._epochs)]
-        else:
-            middle_t = 0.0
+        middle, middle_t = len(self) // 2, 0.0
+        for epochs in (map(UNTIL_T, self._early), self._epochs, map(UNTIL_T, self._waiting)):
+            ordered = epochs if epochs is self._epochs else sorted(epochs)
+            if 0 <= middle < len(ordered):
+                middle_t = ordered[middle]
+            middle -= len(ordered)
         return middle_t - LONGEST_S, middle_t + LONGEST_S
 
 

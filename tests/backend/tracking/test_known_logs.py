@@ -98,6 +98,19 @@ def test_a_log_that_tells_of_folded_times_is_read_anew_when_it_is_asked_about(
     assert known.read_ahead(reader, head_of(store.get(incident)), "here")
 
 
+def test_a_unit_without_a_clock_that_came_first_costs_nobody_the_others(
+    reader: Watched, store: IncidentStore, incident: str, write: Write
+) -> None:
+    """It counts from when it was switched on, half a century before all others."""
+    early = [[Range(t=float(t), a="ff9", b="base", range_m=1.0, technology="uwb")] for t in range(30)]
+    batches, known = walk(10, start_t=1e9), KnownLogs()
+    for part in (early, batches):
+        write(incident, part)
+        read_whole(known, reader, head_of(store.get(incident)))
+    for _ in range(2):
+        assert smoothed(head_of(store.get(incident)), known, reader) == alone([*early, *batches])
+
+
 def test_an_entry_that_came_after_the_question_is_left_out(
     reader: Watched, store: IncidentStore, incident: str, write: Write
 ) -> None:

@@ -77,12 +77,24 @@ def test_time_that_goes_back_folds_nothing() -> None:
     assert not heard.can_hear([fix(150.0)])
 
 
+def test_an_epoch_of_another_day_is_left_out_ahead_as_well() -> None:
+    wrong, right = [fix(0.0), fix(1.0)], [fix(1e9 + second) for second in range(60)]
+    heard = Heard(LAG_S)
+    heard.hear([*wrong, *right])
+    heard.fold_ahead(1e9 + 60.0)
+    assert heard.can_hear(right[-1:])
+    assert not heard.can_hear(right[:1])
+    assert not heard.misdated()
+    assert len(heard) == len(wrong) + len(right)
+    assert BatchSmoother().smooth(heard) == BatchSmoother().smooth([*wrong, *right])
+
+
 def test_an_epoch_of_another_day_that_was_folded_is_found_out() -> None:
     wrong = [fix(-2.0 * LONGEST_S)]
     right = [fix(float(t)) for t in range(20)]
     heard = Heard(LAG_S)
     heard.hear(wrong)
-    heard.fold_ahead(0.0)
+    heard.fold_ahead(-2.0 * LONGEST_S + 2.0 * LAG_S)
     assert not heard.misdated()
     heard.hear(right)
     assert heard.misdated()
@@ -90,6 +102,25 @@ def test_an_epoch_of_another_day_that_was_folded_is_found_out() -> None:
     anew.hear([*wrong, *right])
     assert not anew.misdated()
     assert BatchSmoother().smooth(anew) == BatchSmoother().smooth(right)
+
+
+def test_from_a_unit_without_a_clock_that_came_first_nothing_goes_on() -> None:
+    """It counts from when it was switched on: half a century is no tick."""
+    heard, right = Heard(LAG_S), [fix(1e9 + second) for second in range(60)]
+    heard.hear([fix(float(second)) for second in range(30)])
+    heard.fold_ahead(30.0)
+    heard.hear(right)
+    heard.fold_ahead(right[-1].t)
+    assert heard.can_hear(right)
+    assert heard.misdated()
+
+
+def test_what_was_left_out_and_belongs_to_the_incident_is_found_out() -> None:
+    """Readings are a day apart, and so none is a day from the middle one."""
+    heard = Heard(LAG_S)
+    heard.hear([fix(0.0), fix(0.6 * LONGEST_S), fix(1.2 * LONGEST_S)])
+    heard.fold_ahead(1.2 * LONGEST_S)
+    assert heard.misdated()
 
 
 def fix(t: float) -> Position:
