@@ -9,8 +9,10 @@ from backend.tracking.heads import Head
 from backend.tracking.log_blocks import Decoded, read_block
 from estimator.trackers.heard import Heard
 
-KEPT = 4
-"""As many incidents are kept: those read on most recently."""
+AHEAD = 4
+"""So many incidents are read ahead: the newest that run."""
+KEPT = 2 * AHEAD
+"""So many are kept, those read most recently: who looks back at others costs no running one its place."""
 
 LARGEST = 2_000_000
 """Readings in all of them: each takes some hundred bytes, also once it is folded."""

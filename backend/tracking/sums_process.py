@@ -14,7 +14,7 @@ from backend.log.read import SqlLogReader
 from backend.tracking.clock_set_back import OneClock, earlier
 from backend.tracking.fold import IncidentFold, OtherState
 from backend.tracking.heads import Head, running
-from backend.tracking.known_logs import KEPT, KnownLog, KnownLogs, entries
+from backend.tracking.known_logs import AHEAD, KnownLog, KnownLogs, entries
 from estimator import trackers
 from estimator.estimate import Relative, TrackPoint
 from estimator.evidence import Advice, Evidence
@@ -123,7 +123,7 @@ def read_ahead(database_url: str) -> bool:
     """
     more = False
     with _engine(database_url) as engine:
-        for head in running(engine)[-KEPT:]:
+        for head in running(engine)[-AHEAD:]:
             try:
                 more |= _known.read_ahead(SqlLogReader(engine), head, database_url)
             except LogUnreadable:

@@ -7,7 +7,7 @@ from estimator.estimate import NodeEstimate, Relative
 from estimator.fusion import physics
 from estimator.fusion.entering.introduce import tuple_of, upper_triangle
 from estimator.fusion.entering.separated_unit import apart_m2, elsewhere_m2
-from estimator.fusion.entering.technologies import BODY, technology_variable
+from estimator.fusion.entering.technologies import technology_variable
 from estimator.fusion.images import doubt_between_m2
 from estimator.fusion.learned.calibration import doubt
 from estimator.fusion.learned.delays import Suspicion
@@ -15,7 +15,7 @@ from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.heading_arcs import loose_headings, swung_m2
 from estimator.graph.dense import Array, Indices
-from estimator.graph.variable import Variable
+from estimator.graph.variable import BODY, Variable
 from estimator.measurements.bearing import within_pi
 
 TRIANGLE = [0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]

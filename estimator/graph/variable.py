@@ -21,6 +21,10 @@ DIMENSION: dict[VariableKind, int] = {
     "receiver": 4,
 }
 
+BODY = 2
+"""Which number of a radio technology tells what bearers' bodies do; those before it tell how its readings go
+with the distance."""
+
 
 class Variable(NamedTuple):
     """The key of a block.

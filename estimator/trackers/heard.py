@@ -98,8 +98,8 @@ class Heard:
     def _day(self) -> tuple[float, float]:
         """Epochs between which the incident lies (s): a day to both sides of its middle reading's."""
         middle, middle_t = len(self) // 2, 0.0
-        for epochs in (map(UNTIL_T, self._early), self._epochs, map(UNTIL_T, self._waiting)):
-            ordered = epochs if epochs is self._epochs else sorted(epochs)
+        early, waiting = (sorted(map(UNTIL_T, some)) for some in (self._early, self._waiting))
+        for ordered in (early, self._epochs, waiting):
             if 0 <= middle < len(ordered):
                 middle_t = ordered[middle]
             middle -= len(ordered)

@@ -31,6 +31,7 @@ from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import gone_m2
 from estimator.graph.dense import Array
+from estimator.graph.variable import BODY
 from estimator.measurements.node import MOVING_ROLES
 
 
@@ -42,10 +43,6 @@ class ChosenMode(NamedTuple):
     sure: bool
     up_m: float
     up_sigma_m: float
-
-
-LAW = 2
-"""Numbers of a technology that tell how its readings go with the distance."""
 
 
 def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None:
@@ -84,8 +81,8 @@ def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None
         if covariance is None or len(covariance) != state.graph.size:
             covariance = state.graph.covariance()
         # What bodies do is little against how unsure a place is that is to be decided.
-        own = slice(state.graph.starts[states], state.graph.starts[states] + LAW)
-        extra, extra_covariance = state.graph.value(states)[:LAW].copy(), covariance[own, own]
+        own = slice(state.graph.starts[states], state.graph.starts[states] + BODY)
+        extra, extra_covariance = state.graph.value(states)[:BODY].copy(), covariance[own, own]
         chosen = _choose(state, node, sightings, extra, extra_covariance, late)
         if chosen is not None and (chosen.sure or (late and _is_place(sightings, chosen.mode))):
             _begin(state, node, sightings, chosen, since_t)

@@ -8,8 +8,6 @@ from estimator.fusion.memory.state import FusionState
 from estimator.graph.variable import Variable
 
 Numbers = tuple[float, float, float]
-BODY = 2
-"""Which number of a technology tells what bearers' bodies do to its readings."""
 SENT = "sent"
 """Owner of the path-loss states of radios that tell the power they send with; "" for those that do not."""
 TOLD_POWER = UNTOLD_POWER + SENT

@@ -7,6 +7,7 @@ import numpy as np
 
 from estimator.fusion.images import Image
 from estimator.graph.dense import Array
+from estimator.graph.variable import DIMENSION, TECHNOLOGIES
 
 Key = tuple[str, int]
 """A block: ("walk", node number) with a PDR unit's errors, ("free", node number) with a velocity, ("stand",
@@ -17,10 +18,7 @@ SIZES: Mapping[str, int] = {
     "walk": 6,
     "free": 6,
     "stand": 3,
-    "range": 3,
-    "rssi": 3,
-    "altimeter": 1,
-    "receiver": 4,
+    **{kind: count for kind, count in DIMENSION.items() if kind in TECHNOLOGIES},
 }
 """How many numbers each kind of block has."""
 

@@ -154,12 +154,8 @@ def fill(
     kind, ahead = kind_of(technology), 0.0
     if technology[START] >= 0 and kind != BEARING:
         ahead = ahead_between(kind, a, b, at_a, at_b, x)
-    row[rows.KIND], row[rows.VALUE], row[rows.CONSTANT], row[rows.AHEAD] = (
-        kind,
-        pair[VALUE],
-        pair[CONSTANT],
-        ahead,
-    )
+    row[rows.KIND], row[rows.VALUE], row[rows.CONSTANT] = kind, pair[VALUE], pair[CONSTANT]
+    row[rows.AHEAD] = ahead
     row[rows.A], row[rows.B], row[rows.EXTRA] = a[recent_places.START], b[recent_places.START], extra
     row[rows.SIGMA], row[rows.NOMINAL] = sigma, pair[SIGMA]
     row[rows.OUTLIERS], row[rows.SHIFT] = technology[OUTLIERS], technology[SHIFT]

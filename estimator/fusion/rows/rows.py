@@ -11,7 +11,7 @@ from estimator.fusion.learned.receivers import LATE_NUMBER
 from estimator.fusion.memory.ledger import BEARING, RANGE, RSSI
 from estimator.graph.dense import Array, Indices
 from estimator.graph.robust import Mixture
-from estimator.graph.variable import Variable
+from estimator.graph.variable import BODY, Variable
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
@@ -156,7 +156,7 @@ def columns_of(table: Array) -> Indices:
                 for i in range(length):
                     columns[r, at + i] = start + i
         if table[r, AHEAD] != 0.0:
-            columns[r, 8] = int(table[r, EXTRA]) + 2
+            columns[r, 8] = int(table[r, EXTRA]) + BODY
     return columns
 
 

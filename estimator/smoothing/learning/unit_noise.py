@@ -14,11 +14,11 @@ from numba import njit
 from numpy.typing import NDArray
 
 from estimator.fusion import physics
-from estimator.fusion.entering.technologies import BODY
 from estimator.fusion.learned.calibration import Calibration, body_sigmas, scale_sigma, told_of, uncalibrated
 from estimator.fusion.memory.prior import Key
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
+from estimator.graph.variable import BODY
 from estimator.smoothing.keyframes.walks import STATES, Motion
 from estimator.smoothing.learning.delays import doubt_delays
 from estimator.smoothing.learning.range_noise import learn_ranging

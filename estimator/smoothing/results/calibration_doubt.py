@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
-from estimator.fusion.entering.technologies import BODY
 from estimator.fusion.learned.calibration import Calibration, doubt
 from estimator.graph.dense import Array
+from estimator.graph.variable import BODY
 from estimator.smoothing.changes.told_fixes import shared_moments
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES

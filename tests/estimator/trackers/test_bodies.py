@@ -6,9 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from estimator.fusion.entering.technologies import BODY
 from estimator.graph.dense import Array
-from estimator.graph.variable import Variable
+from estimator.graph.variable import BODY, Variable
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from estimator.fusion.entering.technologies import BODY
 from estimator.graph.dense import Array
+from estimator.graph.variable import BODY
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node, Role
