@@ -21,11 +21,19 @@ def called():
 
 warm_up()
 before = called()
-tracker, smoother = KirchhoffTracker(), BatchSmoother(TrackerSettings())
+def follow(readings):
+    tracker, seconds = KirchhoffTracker(), {}
+    for reading in readings:
+        seconds.setdefault(reading.t // 1.0, []).append(reading)
+    for second in sorted(seconds):
+        tracker.fold(seconds[second])
+    tracker.estimates()
+
+smoother = BatchSmoother(TrackerSettings())
 early = [reading for reading in scenario("office-fire", 11).readings if reading.t < 40.0]
-for second in range(40):
-    tracker.fold([reading for reading in early if reading.t // 1.0 == second])
-tracker.estimates()
+follow(early)
+# Long enough that powers are asked whether a unit's frame has turned.
+follow(scenario("paper-a", 0).readings)
 one_step = [
     Node(t=1.0, node="base", role="base", position_m=(0.0, 0.0, 0.0)),
     Node(t=1.0, node="ff1", role="responder"),

@@ -36,7 +36,7 @@ class ToldWay(NamedTuple):
     Attributes:
         begin_t: epoch from which displacements are summed up (s).
         sums: displacements up to each power, and their moments in time: east, north, m × 4.
-        moments: see `T_OF`, k × 6.
+        moments: see `T_OF`, k × 6, row by row in memory: for others `turn_gains` is not compiled beforehand.
         at_moments: the same sums up to these, k × 4.
         bent: what it costs the solution's way that the unit has told another one since then, k.
     """

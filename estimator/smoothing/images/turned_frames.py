@@ -206,9 +206,8 @@ def _heard(
     chosen = np.flatnonzero(mine & (rows.pairs[:, 0] > times[-1] - LOOK_S))
     a_m, b_m = rows.places(solved.x)
     chosen = chosen[np.abs(a_m[chosen, 2] - b_m[chosen, 2]) < STAIR_M]
-    is_first = first[chosen]
-    here_m = np.where(is_first[:, None], a_m[chosen], b_m[chosen])
-    there_m = np.where(is_first[:, None], b_m[chosen], a_m[chosen])
+    is_first, ends_m = first[chosen], (a_m[chosen], b_m[chosen])
+    here_m, there_m = np.where(is_first[:, None], ends_m, ends_m[::-1])
     other = np.where(is_first, rows.pairs[chosen, 3], rows.pairs[chosen, 2]).astype(np.intp)
     exponent, border = np.zeros(len(state.sources)), layout.length * layout.width
     law = np.array([[0.0, physics.RSSI_POWER_SIGMA_DB], [0.0, physics.RSSI_EXPONENT_SIGMA]])
@@ -231,7 +230,8 @@ def _heard(
     motion = solved.motions[index]
     misfit = 0.5 * np.einsum("ki,kij,kj->k", motion.residual, motion.information, motion.residual)
     bent = np.cumsum(misfit[::-1])[::-1][at] * max(*walk.node.walk_factors, 1.0)
-    moments = np.column_stack([times[at], states[walk.first + at][:, [0, 1, *range(HEADING, SCALE + 1)]]])
+    told_of = states[walk.first + at][:, [0, 1, *range(HEADING, SCALE + 1)]]
+    moments = np.ascontiguousarray(np.column_stack([times[at], told_of]))
     return heard, ToldWay(way.begin_t, summed(heard[:, 0]), moments, summed(times[at]), bent), law
 
 
