@@ -33,6 +33,7 @@ from estimator.graph.variable import Variable
 from estimator.inertial.after_gaps import find_standstill, keep_heading
 from estimator.inertial.after_gaps import level_backwards as place_boot
 from estimator.inertial.boot import Boot
+from estimator.inertial.footholds import due_s, move_prints, place_at
 from estimator.inertial.free_navigation import add_doubt
 from estimator.inertial.sample_rate import Clock, add_epoch
 from estimator.inertial.stuck_sensor import drop_stuck_samples, initial_watch
@@ -88,6 +89,8 @@ def warm_up() -> None:
     boot, rests = Boot.new(0.0), np.zeros((60, 3)) + np.array([0.0, 0.0, 9.8])
     taken = advance(boot, rests, np.zeros((60, 3)), 0.01)
     advance(boot, rests[taken:], np.zeros((60, 3))[taken:], 0.01)
+    due_s(boot.footholds)
+    move_prints(boot.footholds, place_at(boot.footholds, 0.0))
     add_doubt(boot, 0.5)
     keep_heading(boot)
     again, felt = boot.to_level_again(), np.hstack([rests, np.zeros((60, 3))])

@@ -13,6 +13,7 @@ from estimator.trackers.base import TrackerSettings
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from estimator.warm import warm_up
+from tests.estimator.inertial.boot_motion import BootMotion
 
 def called():
     modules = [vars(module) for name, module in sys.modules.items() if name.startswith("estimator.")]
@@ -34,6 +35,9 @@ early = [reading for reading in scenario("office-fire", 11).readings if reading.
 follow(early)
 # Long enough that powers are asked whether a unit's frame has turned.
 follow(scenario("paper-a", 0).readings)
+# Raw samples of a boot, some of which never came.
+samples = BootMotion().rests(5.0).walks(20).rests(3.0).walks(10).gait().readings()
+follow([Node(t=0.0, node="ff1", role="responder"), *samples[:12], *samples[13:18], *samples[22:]])
 one_step = [
     Node(t=1.0, node="base", role="base", position_m=(0.0, 0.0, 0.0)),
     Node(t=1.0, node="ff1", role="responder"),
