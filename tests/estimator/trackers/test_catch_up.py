@@ -7,7 +7,7 @@ import pytest
 from estimator.estimate import NodeEstimate
 from estimator.fusion.memory.state import FusionState
 from estimator.measurements import AnyReading
-from estimator.smoothing import window
+from estimator.smoothing.window_solution import refresh
 from estimator.trackers.catch_up import (
     BACKLOG_TICKS,
     FOLLOWED_PER_TICK,
@@ -40,13 +40,12 @@ def test_a_gateway_that_is_always_behind_has_the_window_solved_a_few_times_a_sec
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     solved: list[float] = []
-    refresh = window.refresh
 
     def counted(state: FusionState, solved_t: float) -> bool:
         solved.append(state.newest_t)
         return refresh(state, solved_t)
 
-    monkeypatch.setattr(window, "refresh", counted)
+    monkeypatch.setattr("estimator.smoothing.window.refresh", counted)
     tracker, before = KirchhoffTracker(), 0
     for number, batch in enumerate(batches(LAST_S)):
         if number == 2 * (BEHIND_S + 10):

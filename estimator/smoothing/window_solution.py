@@ -1,0 +1,140 @@
+"""The window solved: recent keyframes linearised again at what is known now, before they are marginalised.
+
+Of several hypotheses, and of the images of ways, the likeliest solution counts. The filter goes on from it.
+"""
+
+from collections.abc import Sequence
+from functools import partial
+
+from msgspec.structs import replace
+
+from estimator.fusion import physics
+from estimator.fusion.memory.prior import Prior
+from estimator.fusion.memory.state import FusionState
+from estimator.graph.dense import Array
+from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
+from estimator.smoothing.images.alternatives import Mode, alternatives_now
+from estimator.smoothing.images.likeliest_image import JudgedImages, likeliest_image
+from estimator.smoothing.images.solutions import SLACKS_M
+from estimator.smoothing.images.turned_frames import may_have_turned, turned_frames
+from estimator.smoothing.images.unit_mounting import likeliest_mounting
+from estimator.smoothing.images.unseen_climbs import find_unseen_climb, hinted
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.problem.gauge_turn import turned
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.readings.rows import Rows
+from estimator.smoothing.window_extent import LONGEST_S, STEPS_S, restart, spacing_s, trim
+from estimator.smoothing.window_findings import tell_findings
+
+GONE = 8.0
+"""A window this many times as long as it may be is begun anew."""
+ITERATIONS = 8
+"""Most windows rest after two or three steps. Among walls little holds a map: left after four, one was 17 m
+off where it would have rested 9 m off."""
+RESTING = 0.1
+"""A window that gains less in log likelihood is solved again soon anyway."""
+
+
+def refresh(state: FusionState, solved_t: float) -> bool:
+    """Solve the window again, and go on from its solution.
+
+    Args:
+        state: the fusion, changed in place.
+        solved_t: when it was last solved (s).
+
+    Returns:
+        False where it has none: the filter goes on as it was.
+    """
+    since = state.window_t = _since(state)
+    if state.newest_t - since > GONE * LONGEST_S:
+        restart(state)
+        return False
+    try:
+        judged, mountings = _likeliest(state, since, solved_t)
+        state.exposed = judged.exposed
+        trimmed = trim(judged.problem, judged.solved)
+        _hand_back(state, judged, mountings)
+        causes = tell_findings(state, judged, solved_t)
+    except ValueError as error:
+        text = f"the last minutes could not be solved again, positions go on without: {error}"
+        state.say("unsolved", state.newest_t, None, text)
+        return False
+    _remember(state, judged, trimmed)
+    # Where one is likely to be wrong, look again soon which one.
+    state.suspected = state.suspected or causes.wrong or may_have_turned(state)
+    causes.correct(state)
+    return True
+
+
+def _since(state: FusionState) -> float:
+    """Where the window begins (s): with the first node, until its oldest keyframes are marginalised."""
+    if state.window_t is not None:
+        return state.window_t
+    beginnings = state.ledger.table("begins"), state.ledger.table("stands")
+    return float(min(rows[:, 0].min() for rows in beginnings if len(rows)))
+
+
+def _likeliest(state: FusionState, since: float, solved_t: float) -> tuple[JudgedImages, list[Mode]]:
+    """The likeliest solution, with climbs, turned frames, mountings and images tried; others by mountings."""
+    build = partial(_problem, since=since)
+    problem = build(state)
+    solved = _solved(problem, problem.layout.start(), solved_t)
+    if hinted(problem, solved):
+        problem, solved = find_unseen_climb(problem, solved, build, RESTING)
+    problem, solved = turned_frames(problem, solved, build, RESTING)
+    problem, solved, mountings = likeliest_mounting(problem, solved, build, RESTING, solved_t)
+    return likeliest_image(problem, solved), mountings
+
+
+def _problem(state: FusionState, since: float) -> Problem:
+    layout = Layout(state, since, spacing_s(state), state.prior)
+    rows = Rows(layout, since)
+    rows.learn(state.noise)
+    return Problem(layout, rows, state.prior)
+
+
+def _solved(problem: Problem, x: Array, solved_t: float) -> Solution:
+    """The likelier solution of two starts: the filter's estimate, and the units' dead reckoning.
+
+    The filter may have turned the map, of which what was solved before knows nothing: the kink between the
+    two can bend everything, and turn the map further with each solution.
+
+    A reading that has led the filter far away lies between keyframes that know nothing of it and those that
+    do: it is held against a start that is as unsure as that, or it would be an outlier for ever.
+
+    Args:
+        problem: of the window.
+        x: where the filter has led to, flat.
+        solved_t: when the window was last solved (s).
+    """
+    free = any(walk.way is None for walk in problem.layout.walks)
+    slacks = SLACKS_M if free else ()
+    kinked = problem.going.kinked(x, physics.TICK_S)
+    solved = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING, kinked)
+    reckoned = problem.going.reckoned(x, solved_t)
+    if problem.at(reckoned).cost >= solved.cost:
+        return solved
+    other = problem.solve(reckoned, slacks, len(slacks) + ITERATIONS, RESTING)
+    return min(solved, other, key=lambda found: found.cost)
+
+
+def _hand_back(state: FusionState, judged: JudgedImages, mountings: Sequence[Mode]) -> None:
+    """Let the filter go on from the solution, and each node know where else it may be."""
+    problem, x = judged.problem, judged.solved.x
+    layout = problem.layout
+    left = judged.solved.chain.remainder(layout.length - 1)
+    left = turned(left, layout, problem.pivot_m, problem.first(x), x)
+    hand_back(state, layout, judged.solved, left.matrix)
+    for name, images in alternatives_now(layout, x, [*judged.modes, *mountings]).items():
+        state.nodes[name] = replace(state.nodes[name], otherwise=images)
+
+
+def _remember(state: FusionState, judged: JudgedImages, trimmed: tuple[Prior, float] | None) -> None:
+    """Keep where everyone was; of what leaves the window, where it has become long, only a prior."""
+    keep_keyframes(state, judged.problem.layout, judged.solved.x)
+    state.prior = judged.problem.prior
+    if trimmed is not None:
+        state.prior, state.window_t = trimmed
+        state.ledger.forget(state.window_t, ("pairs", "singles", "drops", "poses"))
+        state.ledger.forget(state.window_t - STEPS_S, ("steps",))
