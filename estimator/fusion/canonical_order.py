@@ -1,6 +1,8 @@
 """The canonical order of readings: the same set gives the same estimates, in whatever order it arrives."""
 
 import math
+from collections.abc import Iterable
+from itertools import groupby
 from operator import attrgetter
 
 import msgspec
@@ -14,9 +16,21 @@ UNTIL_T = attrgetter("until_t")
 """Until when a reading tells, for a search among readings in their order."""
 
 
-def place_of(reading: AnyFolded) -> tuple[float, int, bytes]:
-    """A reading's place in the order: until when it tells, introductions first, then its own bytes."""
-    return reading.until_t, 0 if isinstance(reading, Node) else 1, _encode(reading)
+def in_order(readings: Iterable[AnyFolded]) -> list[AnyFolded]:
+    """Readings in their order: by until when they tell, introductions first, then by their own bytes."""
+    ordered: list[AnyFolded] = []
+    for _, same in groupby(sorted(readings, key=UNTIL_T), key=UNTIL_T):
+        together = list(same)
+        if len(together) > 1:
+            together.sort(key=_encode)
+            if Node in map(type, together):
+                together.sort(key=_follows)
+        ordered += together
+    return ordered
+
+
+def _follows(reading: AnyFolded) -> bool:
+    return not isinstance(reading, Node)
 
 
 def tick_of(t: float) -> int:

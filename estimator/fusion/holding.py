@@ -18,6 +18,7 @@ from estimator.fusion.rows.rows import Single, table_of
 from estimator.fusion.update import update
 from estimator.inertial.samples import AnyFolded
 from estimator.measurements.altitude import Altitude, Pressure
+from estimator.measurements.base import PairReading
 from estimator.measurements.bearing import Bearing
 from estimator.measurements.drop import Drop
 from estimator.measurements.node import MOVING_ROLES
@@ -32,7 +33,7 @@ HELD = (*PAIRS, Position, Altitude, Pressure, Drop)
 
 def names_of(reading: AnyFolded | Crossing) -> tuple[str, ...]:
     """The nodes that a reading names."""
-    if isinstance(reading, PAIRS):
+    if isinstance(reading, PairReading):
         return reading.a, reading.b
     if isinstance(reading, Drop):
         return reading.node, reading.by

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from estimator.estimate import Notice
-from estimator.fusion.canonical_order import end_of_tick, place_of
+from estimator.fusion.canonical_order import end_of_tick, in_order
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.tick import fold_tick
 from estimator.inertial.samples import AnyFolded
@@ -69,7 +69,7 @@ class Chain:
         """
         for tick in ticks:
             after = self.state.copy()
-            fold_tick(after, end_of_tick(tick), sorted(readings[tick], key=place_of))
+            fold_tick(after, end_of_tick(tick), in_order(readings[tick]))
             after.bent_m = max(after.bent_m, found_m(self.state, after))
             solve_if_due(after, end_of_tick(tick))
             notices[tick] = list(after.notices)
@@ -138,7 +138,7 @@ def hurried(
     """
     state = before.copy()
     for tick in ticks:
-        fold_tick(state, end_of_tick(tick), sorted(readings[tick], key=place_of))
+        fold_tick(state, end_of_tick(tick), in_order(readings[tick]))
         notices[tick] = list(state.notices)
     solve_now(state, end_of_tick(ticks[-1]))
     notices[ticks[-1]] = list(state.notices)

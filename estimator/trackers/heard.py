@@ -8,7 +8,7 @@ from array import array
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
-from estimator.fusion.canonical_order import UNTIL_T, place_of
+from estimator.fusion.canonical_order import UNTIL_T, in_order
 from estimator.fusion.holding import names_of
 from estimator.fusion.memory.state import FusionState
 from estimator.inertial.samples import AnyFolded, in_pieces
@@ -64,7 +64,7 @@ class Heard:
         if until_t <= self._until_t or (self._epochs and self._epochs[-1] <= newest_t - LONGEST_S):
             # What was folded is of another day: nothing goes on from there.
             return
-        self._waiting.sort(key=place_of)
+        self._waiting = in_order(self._waiting)
         early = bisect_right(self._waiting, newest_t - LONGEST_S, key=UNTIL_T)
         ready = self._waiting[early : bisect_left(self._waiting, until_t, key=UNTIL_T)]
         self._early += self._waiting[:early]
@@ -89,7 +89,7 @@ class Heard:
         Both may be changed: this goes on without what is not folded yet. What is folded is not `misdated`.
         """
         since_t, until_t = self._day()
-        rest = sorted(self._waiting, key=place_of)
+        rest = in_order(self._waiting)
         rest = rest[bisect_right(rest, since_t, key=UNTIL_T) : bisect_left(rest, until_t, key=UNTIL_T)]
         lifetimes = dict(self._lifetimes)
         _extend(lifetimes, rest)
@@ -116,5 +116,6 @@ def _extend(lifetimes: dict[str, tuple[float, float]], readings: Sequence[AnyFol
     for reading in readings:
         since_t, until_t = reading.t, reading.until_t
         for name in names_of(reading):
-            first_t, _ = lifetimes.get(name, (since_t, until_t))
-            lifetimes[name] = (min(first_t, since_t), until_t)
+            known = lifetimes.get(name)
+            first_t = since_t if known is None or since_t < known[0] else known[0]
+            lifetimes[name] = first_t, until_t
