@@ -1,7 +1,9 @@
 """What is held against the graph together, and when: some wait for displacements that cover their epochs."""
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Mapping, Sequence
+from operator import attrgetter
 
 import numpy as np
 from msgspec.structs import replace
@@ -18,7 +20,6 @@ from estimator.fusion.rows.rows import Single, table_of
 from estimator.fusion.update import update
 from estimator.inertial.samples import AnyFolded
 from estimator.measurements.altitude import Altitude, Pressure
-from estimator.measurements.base import PairReading
 from estimator.measurements.bearing import Bearing
 from estimator.measurements.drop import Drop
 from estimator.measurements.node import MOVING_ROLES
@@ -27,13 +28,17 @@ from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
 
 SAME_EPOCH_S = 1e-6
-PAIRS = (Range, Rssi, Bearing, Crossing)
+PAIRS = (Rssi, Range, Crossing, Bearing)
 HELD = (*PAIRS, Position, Altitude, Pressure, Drop)
+"""The commonest first: that a reading is of a kind is told at once, that it is of none of several is not."""
+PLACING = frozenset((Range, Position))
+"""What tells where somebody is."""
+EPOCH = attrgetter("t")
 
 
 def names_of(reading: AnyFolded | Crossing) -> tuple[str, ...]:
     """The nodes that a reading names."""
-    if isinstance(reading, PairReading):
+    if isinstance(reading, PAIRS):
         return reading.a, reading.b
     if isinstance(reading, Drop):
         return reading.node, reading.by
@@ -53,15 +58,12 @@ def covered(
     """
     units = _told_until(state)
     soonest = min(units.values(), default=math.inf)
-    ready: list[AnyHeld] = []
+    told = max(bisect_right(readings, soonest, key=EPOCH), bisect_left(readings, late_t, key=EPOCH))
+    ready = list(readings[:told])
     waiting: list[AnyHeld] = []
-    for reading in readings:
-        t = reading.t
-        if t <= soonest or t < late_t:
-            ready.append(reading)
-            continue
+    for reading in readings[told:]:
         names = names_of(reading)
-        wait = t > min(units.get(name, math.inf) for name in names)
+        wait = reading.t > min(units.get(name, math.inf) for name in names)
         (waiting if wait and unwaited.isdisjoint(names) else ready).append(reading)
     state.waiting = tuple(waiting)
     return ready
@@ -86,13 +88,17 @@ def parts_of(state: FusionState, readings: Sequence[AnyHeld]) -> list[Sequence[A
     A unit's own way tells where it stood at each epoch that it covers. A velocity that changes tells so for a
     moment only, and of who is silent nothing is told: held at one epoch, seconds of his readings would show
     him where he was on average, and sure of it.
+
+    Args:
+        state: the fusion.
+        readings: in order of epoch.
     """
     loose = {
         n.node for n in state.nodes.values() if n.role in MOVING_ROLES and n.mode in ("free", "undecided")
     }
     units = _told_until(state)
     soonest = min(units.values(), default=math.inf)
-    if not loose and all(reading.t <= soonest for reading in readings):
+    if not loose and (not readings or readings[-1].t <= soonest):
         return [readings]
     together: list[AnyHeld] = []
     parts: dict[int, list[AnyHeld]] = {}
@@ -118,14 +124,14 @@ def hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single])
     between: list[AnyPair] = []
     others: list[AnyHeld] = []
     for reading in readings:
-        if isinstance(reading, (Range, Position)):
-            placed.update(names_of(reading))
         if isinstance(reading, PAIRS):
             between.append(reading)
             until[reading.a] = until[reading.b] = reading.t
         else:
             others.append(reading)
             until.update(dict.fromkeys(names_of(reading), reading.t))
+        if type(reading) in PLACING:
+            placed.update(names_of(reading))
     _carry(state, until, placed)
     pairs = Pairs(state)
     told = pairs.fused_t

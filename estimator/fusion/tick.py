@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from operator import attrgetter, itemgetter
+from operator import itemgetter
 
 from estimator.fusion import physics
 from estimator.fusion.entering import (
@@ -12,7 +12,7 @@ from estimator.fusion.entering import (
     replaced_unit,
     separated_unit,
 )
-from estimator.fusion.holding import HELD, covered, hold, names_of, parts_of
+from estimator.fusion.holding import EPOCH, HELD, covered, hold, names_of, parts_of
 from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.fusion.motion.dead_reckoning import drift_units, was_silent
 from estimator.fusion.readings import absolute, raw_samples
@@ -63,7 +63,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
             displacements += raw_samples.displacements_of(state, reading)
     holds += hear(state, [r for r in readings if isinstance(r, Rssi)])
     displacements = separated_unit.set_aside(state, with_starts(state, displacements))
-    holds.sort(key=attrgetter("t"))
+    holds.sort(key=EPOCH)
     late_t, gone_out = until_t - physics.PENDING_S, {r.node for r in retired}
     for name, changed_t in state.announced.items():
         # What the old unit has told of leads up to where the new one is put on.
@@ -121,6 +121,8 @@ def _begin_at_fixes(state: FusionState, readings: Sequence[AnyHeld]) -> list[Any
     Returns:
         The readings that are still to be held.
     """
+    if Position not in map(type, readings):
+        return list(readings)
     others: list[AnyHeld] = []
     for reading in readings:
         if isinstance(reading, Position):

@@ -10,6 +10,7 @@ hierarchical models").
 
 import math
 from bisect import bisect_left
+from collections.abc import Sequence
 from typing import Self
 
 import msgspec
@@ -46,7 +47,7 @@ class Reach(msgspec.Struct, frozen=True, array_like=True):
     Attributes:
         heard: packets from radios in reach.
         lost: packets from such radios that were not heard.
-        logs: log likelihood of each of `SPREADS_DB2`; empty: no crossing has told.
+        logs: log likelihood of each of `SPREADS_DB2` less the largest; empty: no crossing has told.
     """
 
     heard: int = 0
@@ -78,18 +79,26 @@ class Reach(msgspec.Struct, frozen=True, array_like=True):
         """What is known after more packets."""
         return replace(self, heard=self.heard + heard, lost=max(self.lost + lost, 0))
 
-    def with_crossing(self, off_db: float, variance_db2: float) -> Self:
-        """What is known after a crossing.
+    def with_crossings(self, off_db: Sequence[float], variance_db2: Sequence[float]) -> Self:
+        """What is known after crossings.
 
         Args:
-            off_db: what it is off by (dB).
-            variance_db2: of what was predicted of it (dB²).
+            off_db: what each is off by (dB).
+            variance_db2: of what was predicted of each (dB²).
         """
-        spread, wide = variance_db2 + SPREADS_DB2, variance_db2 + OUTLIER_DB2
-        good = math.log(1.0 - OUTLIERS) - 0.5 * (off_db**2 / spread + np.log(spread))
-        odd = math.log(OUTLIERS) - 0.5 * (off_db**2 / wide + math.log(wide))
-        logs = self._logs + np.logaddexp(good, odd)
-        return replace(self, logs=tuple((logs - logs.max()).tolist()))
+        spread, squared = np.array(variance_db2)[:, None] + SPREADS_DB2, [off**2 for off in off_db]
+        good = math.log(1.0 - OUTLIERS) - 0.5 * (np.array(squared)[:, None] / spread + np.log(spread))
+        wide = [variance + OUTLIER_DB2 for variance in variance_db2]
+        odd = [
+            math.log(OUTLIERS) - 0.5 * (off2 / total + math.log(total))
+            for off2, total in zip(squared, wide, strict=True)
+        ]
+        logs = self._logs.tolist()
+        for told in np.logaddexp(good, np.array(odd)[:, None]).tolist():
+            logs = [known + more for known, more in zip(logs, told, strict=True)]
+            likeliest = max(logs)
+            logs = [log - likeliest for log in logs]
+        return replace(self, logs=tuple(logs))
 
 
 def in_metres(level_db: float, off_db: float, sigma_db: float) -> tuple[float, float, float]:

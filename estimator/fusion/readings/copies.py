@@ -27,7 +27,7 @@ def without_copies(state: FusionState, readings: Sequence[AnyFolded]) -> list[An
     found: list[AnyFolded] = []
     before: AnyFolded | None = None
     for reading in readings:
-        if isinstance(reading, ONCE) and reading == before:
+        if reading == before and isinstance(reading, ONCE):
             state.count("not_fused")
         else:
             found.append(reading)

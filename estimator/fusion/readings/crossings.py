@@ -33,22 +33,27 @@ def hear(state: FusionState, readings: Sequence[Rssi]) -> list[Crossing]:
     Returns:
         The crossings that are sure now.
     """
-    heard: dict[tuple[int, str], dict[str, float]] = {}
-    tick, tick_t = 0, math.nan
-    for reading in readings:
-        t = reading.t
-        if t != tick_t:
-            tick, tick_t = tick_of(t), t
-        heard.setdefault((tick, reading.a), {})[reading.b] = t
-    if not heard:
+    if not readings:
         return []
+    heard: dict[int, dict[str, dict[str, float]]] = {}
+    listening, tick_t = dict[str, dict[str, float]](), math.nan
+    for reading in readings:
+        t, name = reading.t, reading.a
+        if t != tick_t:
+            listening, tick_t = heard.setdefault(tick_of(t), {}), t
+        now = listening.get(name)
+        if now is None:
+            listening[name] = {reading.b: t}
+        else:
+            now[reading.b] = t
     crossings: list[Crossing] = []
     silent, packets, lost = state.reach.silent, 0, 0
-    for (_, name), now in heard.items():
-        told = listen(name, state.listeners.get(name, Listener()), now, silent or reach.MOST_SILENT)
-        state.listeners[name] = told.listener
-        packets, lost = packets + told.heard, lost + told.lost
-        crossings += told.crossings
+    for listening in heard.values():
+        for name, now in listening.items():
+            told = listen(name, state.listeners.get(name, Listener()), now, silent or reach.MOST_SILENT)
+            state.listeners[name] = told.listener
+            packets, lost = packets + told.heard, lost + told.lost
+            crossings += told.crossings
     state.reach = state.reach.with_packets(packets, lost)
     telling = [] if silent is None else [one for one in crossings if _tells(state, one)]
     if telling:
@@ -73,16 +78,18 @@ def learn_reach(state: FusionState, table: Array, told: Array) -> None:
     start = state.graph.starts.get(path_loss_variable(REACH))
     if start is None:
         return
-    crossed = crossings_in(table, start).tolist()
-    if not crossed:
+    crossed = crossings_in(table, start)
+    if not len(crossed):
         return
-    for r in crossed:
-        # What was crossed at the same place just before tells nothing new of how reaches differ.
-        if state.links.table[int(table[r, LINK]), KEPT] < SAME_PLACE:
-            predicted, variance = float(told[r, PREDICTED]), float(table[r, SIGMA]) ** 2
-            # What it was off by before it was followed, as far as it was believed.
-            off_db = float(told[r, RESIDUAL]) * (1.0 + float(told[r, GOOD]) * predicted / variance)
-            state.reach = state.reach.with_crossing(off_db, predicted)
+    # What was crossed at the same place just before tells nothing new of how reaches differ.
+    kept = state.links.table[table[crossed, LINK].astype(np.intp), KEPT]
+    news = crossed[kept < SAME_PLACE]
+    if len(news):
+        residual, predicted, good = told[news][:, [RESIDUAL, PREDICTED, GOOD]].T
+        variance = np.array([sigma**2 for sigma in table[news, SIGMA].tolist()])
+        # What each was off by before it was followed, as far as it was believed.
+        off_db = residual * (1.0 + good * predicted / variance)
+        state.reach = state.reach.with_crossings(off_db.tolist(), predicted.tolist())
     _note(state)
 
 

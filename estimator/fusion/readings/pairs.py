@@ -80,7 +80,7 @@ class Pairs:
             a = named.get(name_a) or self._name(name_a, t)
             b = named.get(name_b) or self._name(name_b, t)
             between = a.decided and b.decided
-            crossing = isinstance(reading, Crossing)
+            crossing = type(reading) is Crossing
             if not between and (crossing or not self._sights(a.node, b.node, reading)):
                 continue
             if between and a.fixed and b.fixed:
@@ -129,7 +129,7 @@ class Pairs:
             return np.empty((0, FIELDS))
         state = self._state
         made = pair_rows(
-            np.array(self._told).reshape(-1, PAIR),
+            np.fromiter(self._told, np.float64, len(self._told)).reshape(-1, PAIR),
             table_from(self._technologies, len(Technology._fields)),
             table_from(self._ends, len(TrailEnd._fields)),
             table_of_marks(self._marks),

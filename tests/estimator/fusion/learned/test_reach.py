@@ -22,10 +22,7 @@ UNSURE_DB2 = st.floats(0.01, 50.0)
 
 
 def crossed(*off_db: float, variance_db2: float = 0.25) -> Reach:
-    reach = Reach()
-    for off in off_db:
-        reach = reach.with_crossing(off, variance_db2)
-    return reach
+    return Reach().with_crossings(off_db, [variance_db2] * len(off_db))
 
 
 def test_until_it_is_known_how_many_packets_are_lost_silence_tells_nothing() -> None:
@@ -75,10 +72,12 @@ def test_the_spread_is_its_posteriors_mean_in_the_logarithm(told: list[tuple[flo
     posterior = np.ones(len(SPREADS_DB2))
     reach = Reach()
     for off_db, variance in told:
-        reach = reach.with_crossing(off_db, variance)
+        reach = reach.with_crossings([off_db], [variance])
         odd = OUTLIERS * density(off_db, variance + OUTLIER_DB2)
         posterior *= [(1.0 - OUTLIERS) * density(off_db, variance + s) + odd for s in SPREADS_DB2]
     posterior /= posterior.sum()
+    at_once = Reach().with_crossings([off for off, _ in told], [variance for _, variance in told])
+    assert at_once.sigma_db == reach.sigma_db
     assert math.log(reach.sigma_db) == pytest.approx(posterior @ np.log(np.sqrt(SPREADS_DB2)), abs=1e-6)
 
 
