@@ -18,10 +18,22 @@ from estimator.graph.variable import DIMENSION, Variable, VariableKind
 
 SMALL = 64
 """Up to so many rows plain loops invert L sooner than LAPACK has been called for each part of it."""
+LINE = 8
+"""Numbers in a line of a processor's cache."""
+
+
+def roomy(size: int) -> int:
+    """A capacity for so many rows and a quarter more, of an odd number of cache lines.
+
+    Columns of a matrix whose rows are a power of two long would fall into a few sets of the cache, and drive
+    each other out.
+    """
+    lines = -(-5 * size // (4 * LINE))
+    return LINE * (lines | 1)
 
 
 class Kirchhoff:
-    """Dense L, b and reference x over keyed blocks; storage grows by doubling.
+    """Dense L, b and reference x over keyed blocks; storage grows by a share, see `roomy`.
 
     Attributes:
         starts: first row of each block, in the order of the rows; copies share it, so it is never changed
@@ -137,7 +149,7 @@ class Kirchhoff:
             raise ValueError(f"{variable} is in the graph already")
         start, end = self.size, self.size + DIMENSION[variable.kind]
         if end > self.capacity:
-            self._grow(max(2 * self.capacity, end))
+            self._grow(roomy(end))
         self._matrix[start:end, :end] = 0.0
         self._matrix[:start, start:end] = 0.0
         self._vector[start:end] = 0.0

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.graph.dense import Array
-from estimator.graph.kirchhoff import Kirchhoff
+from estimator.graph.kirchhoff import LINE, Kirchhoff, roomy
 from estimator.graph.variable import Variable
 
 NONE = (np.inf,) * 3
@@ -214,3 +214,9 @@ def test_copies_share_where_blocks_stand_until_one_of_them_takes_another_in() ->
     twin.add_node(node("b"), np.zeros(3), (1.0,) * 3)
     assert list(graph.starts) == [node("a")]
     assert list(twin.starts) == [node("a"), node("b")]
+
+
+def test_rows_have_room_for_a_quarter_more_and_an_odd_number_of_cache_lines() -> None:
+    for size in range(1, 1000):
+        assert 1.25 * size <= roomy(size) < 1.25 * size + 2 * LINE
+        assert roomy(size) % (2 * LINE) == LINE
