@@ -43,7 +43,8 @@ from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.changes.moved_nodes import test_place
 from estimator.smoothing.changes.track_fit import RangedTrack, fit_track
-from estimator.smoothing.images.frame_turns import HEARD, ToldWay, power_costs, turn_gains
+from estimator.smoothing.images.frame_turns import ToldWay, turn_gains
+from estimator.smoothing.images.heard_powers import HEARD, power_costs
 from estimator.smoothing.keyframes.displacement_sums import Way, ways_of
 from estimator.smoothing.keyframes.ends import Ground, Nodes, Table, place_ends
 from estimator.smoothing.keyframes.walks import STATES, dead_reckon, inverses, misfit, reckon, unit_motion

@@ -9,9 +9,9 @@ from estimator.fusion import physics
 from estimator.fusion.images import ALWAYS, Alternative, turned_about
 from estimator.fusion.memory.ledger import RSSI
 from estimator.graph.dense import Array, Indices
-from estimator.smoothing.images.frame_turns import (
+from estimator.smoothing.images.frame_turns import EAST_OF, TURNS_RAD, ToldWay, turn_gains
+from estimator.smoothing.images.heard_powers import (
     EAST,
-    EAST_OF,
     EXPONENT,
     HEARD,
     NORTH,
@@ -20,12 +20,9 @@ from estimator.smoothing.images.frame_turns import (
     SINCE_T,
     THERE_E,
     THERE_N,
-    TURNS_RAD,
     UP,
     VARIANCE,
     T,
-    ToldWay,
-    turn_gains,
 )
 from estimator.smoothing.keyframes.displacement_sums import Way
 from estimator.smoothing.keyframes.layout import Layout, Walk

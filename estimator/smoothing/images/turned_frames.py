@@ -15,7 +15,7 @@ from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
-from estimator.smoothing.images.frame_turns import power_costs
+from estimator.smoothing.images.heard_powers import power_costs
 from estimator.smoothing.images.suspected_turns import LOOK_S, suspected_turn
 from estimator.smoothing.images.taken_turns import take_turn
 from estimator.smoothing.keyframes.displacement_sums import Way

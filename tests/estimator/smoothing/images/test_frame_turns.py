@@ -5,17 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.graph.dense import Array
-from estimator.smoothing.images.frame_turns import (
-    HEARD,
-    KICKED,
-    MOST,
-    TURNS_RAD,
-    ToldWay,
-    power_costs,
-    turn_gains,
-)
+from estimator.smoothing.images.frame_turns import KICKED, TURNS_RAD, ToldWay, turn_gains
+from estimator.smoothing.images.heard_powers import HEARD
 
 ANCHORS_M = np.array([(-15.0, -15.0), (15.0, -15.0), (15.0, 15.0), (-15.0, 15.0)])
 TURNED_S, SECONDS, SIGMA_DB, EXPONENT = 20.0, 60, 6.0, 2.2
@@ -83,17 +75,3 @@ def test_a_law_that_a_wrong_way_has_made_flat_hides_no_turn() -> None:
     assert moments_s[moment] == TURNED_S
     assert by == 3
     assert gains.max() > 10.0
-
-
-def test_powers_of_a_walk_are_counted_since_an_epoch_and_cost_no_more_than_an_outlier() -> None:
-    pairs = np.zeros((5, 11))
-    pairs[:, 0], pairs[:, 1], pairs[:, 2], pairs[:, 3] = (
-        (1, 5, 6, 7, 8),
-        RSSI,
-        (1, 1, 2, 1, 1),
-        (9, 9, 9, 1, 9),
-    )
-    pairs[4, 1] = RANGE
-    off_db, variance = np.array([6.0, 6.0, 6.0, 60.0, 1.0]), np.full(5, 36.0)
-    found = power_costs(pairs, off_db, variance, 2.0, np.array([1.0, 2.0]))
-    assert found.tolist() == [[0.5 + MOST, 2.0, 1.0], [0.5, 1.0, 0.0]]
