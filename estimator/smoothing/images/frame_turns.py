@@ -71,7 +71,7 @@ def turn_gains(heard: Array, told: ToldWay, early_m2: float, law: Array) -> Arra
     """
     m, moments = len(heard), told.moments
     gains = np.zeros((len(moments), len(TURNS_RAD)))
-    each = np.zeros(int(heard[:, RADIO].max()) + 1 if m else 0)
+    each = np.zeros(int(heard[:, RADIO].max()) + 1 if m else 1)
     by_power, by_exponent = 1.0 / law[0, 1] ** 2, 1.0 / law[1, 1] ** 2
     unusual = 0.5 * (law[0, 0] ** 2 * by_power + law[1, 0] ** 2 * by_exponent)
     usual = PowerLaw(by_power, 0.0, by_exponent, -law[0, 0] * by_power, -law[1, 0] * by_exponent, unusual)

@@ -75,3 +75,8 @@ def test_a_law_that_a_wrong_way_has_made_flat_hides_no_turn() -> None:
     assert moments_s[moment] == TURNED_S
     assert by == 3
     assert gains.max() > 10.0
+
+
+def test_who_heard_nobody_on_his_own_storey_has_not_turned() -> None:
+    told = ToldWay(0.0, np.zeros((0, 4)), np.zeros((2, 6)), np.zeros((2, 4)), np.ones(2))
+    assert turn_gains(np.zeros((0, HEARD)), told, 1.0, USUAL).max() <= 0.0
