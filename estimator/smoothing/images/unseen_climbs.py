@@ -100,8 +100,7 @@ def find_unseen_climb(
 
 def _as_it_is(problem: Problem, solved: Solution) -> MarginalCost:
     """See `marginal_cost`: of a solution whose own equations are left for others."""
-    chain = problem.assemble(solved.x, solved.linear, solved.weighted, solved.motions)
-    return marginal_cost(problem, solved, chain)
+    return marginal_cost(problem, solved, solved.assemble())
 
 
 def _trial(

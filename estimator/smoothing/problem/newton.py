@@ -1,5 +1,7 @@
 """Newton's method on a window: robust, with shares of steps and Marquardt's damping, until it rests."""
 
+from functools import partial
+
 import numpy as np
 
 from estimator.graph.dense import Array
@@ -72,7 +74,7 @@ class _Search:
         objective.rows.widen(x, jacobian)
         self.here = objective.at(x)
         self._objective, self._resting = objective, resting
-        self._linear = Linearised(jacobian, self.here.residual)
+        self._linear = Linearised(self.here.residual, lambda: jacobian)
         self._damping, self._near, self._rests = 0.0, False, False
         self._before: tuple[NewtonStep, Array] | None = None
 
@@ -103,7 +105,7 @@ class _Search:
         self._before = None if slack_m > 0.0 or self._damping > 0.0 else (newton, direction.step)
         self._near = self.here.cost - there.cost < NEAR
         self.here = there
-        self._linear = Linearised(self._objective.jacobian(there.x), there.residual)
+        self._linear = Linearised(there.residual, partial(self._objective.jacobian, there.x))
         promised_little = newton.promised < self._resting and self._damping <= LEAST_DAMPING
         self._rests = slack_m == 0.0 and promised_little
         self._damping = 0.1 * self._damping if self._damping > LEAST_DAMPING else 0.0
@@ -113,8 +115,8 @@ class _Search:
         """Where it has led, with the normal equations there."""
         objective, here, linear = self._objective, self.here, self._linear
         weighted = objective.weigh(here.residual)
-        chain = objective.assemble(here.x, linear, weighted, here.motions)
-        return Solution(here.x, chain, linear, weighted, here.motions, here.cost, self._rests)
+        assemble = partial(objective.assemble, here.x, linear, weighted, here.motions)
+        return Solution(here.x, linear, weighted, here.motions, here.cost, self._rests, assemble)
 
     def _newton_step(self, weighted: Weighted, near: bool) -> NewtonStep:
         """A Newton step.

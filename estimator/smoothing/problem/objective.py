@@ -1,7 +1,7 @@
 """What the best estimate of a window makes least: misfits of readings and of motion, and what was known."""
 
 from copy import copy
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Self
 
 import numpy as np
@@ -108,7 +108,7 @@ class Objective:
         Where the prior was linearised, turned as the map has been since: where new derivatives by the same
         numbers were taken elsewhere, their sum would know what nobody has measured, as where north is.
         """
-        return Linearised(self.jacobian(x), self.rows.residual(x))
+        return Linearised(self.rows.residual(x), partial(self.jacobian, x))
 
     @property
     def pivot_m(self) -> Array:
@@ -165,11 +165,11 @@ class Objective:
             certain = np.where(known.slab <= until, certain, 0.0)
             placed = placed._replace(slab=np.minimum(placed.slab, until))
             known = known._replace(slab=np.minimum(known.slab, until))
-        off, ones = self._mean - x[self._at], np.ones((len(self._at), 1))
+        off, ones, jacobian = self._mean - x[self._at], np.ones((len(self._at), 1)), linear.jacobian
 
         def add(strand: Strand, priors: Indices, readings: Indices) -> None:
             strand.add(known, priors, ones, certain, off)
-            strand.add(placed, readings, linear.jacobian, information, weighted.residual)
+            strand.add(placed, readings, jacobian, information, weighted.residual)
 
         chain.each(add, known.parts, placed.parts)
         return chain

@@ -1,5 +1,8 @@
 """What solving a window leads to."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 from estimator.graph.dense import Array
@@ -9,26 +12,35 @@ from estimator.smoothing.keyframes.walks import Motion
 from estimator.smoothing.readings.rows import Linearised
 
 
-class Solution(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Solution:
     """A solved window.
 
     Attributes:
         x: the estimate, flat: keyframes, then the border.
-        chain: its normal equations at the estimate, not yet solved.
         linear: its rows at the estimate.
         weighted: how each row was weighed.
         motions: the walks' motion there.
         cost: negative log likelihood up to a constant.
         rests: the last step promised next to nothing.
+        assemble: makes its normal equations at the estimate.
     """
 
     x: Array
-    chain: Chain
     linear: Linearised
     weighted: Weighted
     motions: list[Motion]
     cost: float
     rests: bool
+    assemble: Callable[[], Chain]
+
+    @cached_property
+    def chain(self) -> Chain:
+        """Its normal equations at the estimate, not yet solved: made when first asked for.
+
+        Of most solutions only the cost is asked, and where they are.
+        """
+        return self.assemble()
 
 
 class Trial(NamedTuple):

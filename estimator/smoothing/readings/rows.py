@@ -1,8 +1,9 @@
 """Every reading of the window as rows of numbers, and their linearisation at any estimate."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
-from typing import NamedTuple, Self
+from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,16 +39,24 @@ PER_ROW = ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike",
 """What there is one of for each row."""
 
 
-class Linearised(NamedTuple):
+class Linearised:
     """Rows at an estimate.
 
+    Args:
+        residual: z − h(x) − shift, m.
+        differentiate: makes the derivatives.
+
     Attributes:
-        jacobian: derivatives, m × 15.
         residual: z − h(x) − shift, m.
     """
 
-    jacobian: Array
-    residual: Array
+    def __init__(self, residual: Array, differentiate: Callable[[], Array]) -> None:
+        self.residual, self._differentiate = residual, differentiate
+
+    @cached_property
+    def jacobian(self) -> Array:
+        """Derivatives, m × 15: made when first asked for, for where a solution ends few ask."""
+        return self._differentiate()
 
 
 class Rows:
@@ -249,7 +258,7 @@ class Rows:
 
     def linearise(self, x: Array) -> Linearised:
         """Residuals and derivatives at an estimate x, flat."""
-        return Linearised(self.jacobian(x), self.residual(x))
+        return Linearised(self.residual(x), lambda: self.jacobian(x))
 
     def residual(self, x: Array) -> Array:
         """Residuals z − h(x) − shift at an estimate x, flat."""

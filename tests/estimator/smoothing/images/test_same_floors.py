@@ -1,5 +1,7 @@
 """Solutions of a window that are compared with the same floors between radios."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from estimator.smoothing.images.likeliest_image import likeliest_image
@@ -24,7 +26,7 @@ def test_what_is_known_of_floors_stays_where_it_is_likelier() -> None:
     assert problem.rows.floors is not None
     held, higher = problem.rows.floors.copy(), solved.x.copy()
     problem.layout.states(higher, 0)[:, 2] += 3.0
-    assert hold_floors(problem, solved._replace(x=higher)).cost <= solved.cost
+    assert hold_floors(problem, replace(solved, x=higher)).cost <= solved.cost
     assert np.array_equal(problem.rows.floors, held)
 
 
