@@ -46,7 +46,7 @@ from estimator.smoothing.changes.track_fit import RangedTrack, fit_track
 from estimator.smoothing.images.frame_turns import ToldWay, turn_gains
 from estimator.smoothing.images.heard_powers import HEARD, power_costs
 from estimator.smoothing.keyframes.displacement_sums import Way, ways_of
-from estimator.smoothing.keyframes.ends import Ground, Nodes, Table, place_ends
+from estimator.smoothing.keyframes.ends import Ground, Nodes, Table, faced, place_ends
 from estimator.smoothing.keyframes.walks import STATES, dead_reckon, inverses, misfit, reckon, unit_motion
 from estimator.smoothing.learning.delay_scores import (
     PROBES,
@@ -193,7 +193,7 @@ def _warm_chain() -> None:
     turn_pairs(x, pair, place[0, :2], 0.0)
     change_pairs(np.eye(2), one, pair, turned_along(x, x, pair, place[0, :2]))
     pivot(np.eye(len(x)), x, Turning(pair, pair, pair[0]), place[0, :2])
-    add_curvature(readings, slab, x, one, one, True, slab, columns, diagonal, wide, corner)
+    add_curvature(readings, slab, faced(x, slab), one, one, True, slab, columns, diagonal, wide, corner)
 
 
 def _warm_filter() -> None:

@@ -13,6 +13,7 @@ from estimator.graph.dense import Array, Indices
 from estimator.graph.robust import Weighted, prior_cost, total_cost
 from estimator.smoothing.chain.chain import Chain
 from estimator.smoothing.chain.strand import Strand, WalkMotion
+from estimator.smoothing.keyframes.ends import faced
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.motions import Motions
 from estimator.smoothing.keyframes.priors import own_priors
@@ -184,7 +185,8 @@ class Objective:
             signed: negative curvature too; see `curvature.add_curvature`.
         """
         rows, placed = self.rows, self.coupled.rows
-        told = x, weighted.information, weighted.residual, signed, placed.slab, placed.columns
+        numbers = faced(x, rows.readings.headings)  # once for all strands
+        told = numbers, weighted.information, weighted.residual, signed, placed.slab, placed.columns
 
         def add(strand: Strand, part: Indices) -> None:
             if len(part):

@@ -8,7 +8,7 @@ from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.measurements.range import range_slope
 from estimator.measurements.rssi import ANTENNA_M, rssi_slope
-from estimator.smoothing.keyframes.ends import faced, place_end
+from estimator.smoothing.keyframes.ends import place_end
 from estimator.smoothing.keyframes.walks import PLACES, STATES
 from estimator.smoothing.readings.linearisation import Readings
 
@@ -19,7 +19,7 @@ NOWHERE_M2 = 1e-6
 def add_curvature(
     readings: Readings,
     chosen: Integers,
-    x: Array,
+    numbers: Array,
     information: Array,
     residual: Array,
     signed: bool,
@@ -40,7 +40,7 @@ def add_curvature(
     Args:
         readings: of the window.
         chosen: which pairs.
-        x: the estimate, flat.
+        numbers: the estimate, see `ends.faced`.
         information: P⁻¹ of each pair, m at least.
         residual: z − h(x) as it is weighed, m at least.
         signed: take negative curvature along the floor too; else only what is positive.
@@ -56,7 +56,6 @@ def add_curvature(
     width, corners = diagonal.shape[1], corner.reshape(1, *corner.shape)
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
-    numbers = faced(x, readings.headings)
     for i in chosen:
         kind = kinds[i]
         if kind > RSSI:
@@ -68,7 +67,7 @@ def add_curvature(
         level, squared = e * e + n * n, e * e + n * n + u * u
         if level < NOWHERE_M2:
             continue
-        state = x[extra[i, 0 if kind == RANGE else 1]]
+        state = numbers[extra[i, 0 if kind == RANGE else 1], 0]
         bent = range_slope(squared, state) if kind == RANGE else rssi_slope(squared, state)
         across = -information[i] * residual[i] * bent
         along = 0.0
