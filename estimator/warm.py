@@ -6,7 +6,7 @@ from estimator.fusion.entering.modes import UndecidedNode, costs_of, find_modes,
 from estimator.fusion.learned.gyros import prior_sigma_radps
 from estimator.fusion.learned.link_correlation import NEW
 from estimator.fusion.learned.noise import single_sigma
-from estimator.fusion.learned.rival import full, predicted
+from estimator.fusion.learned.rival import predicted
 from estimator.fusion.memory.ledger import COLUMNS
 from estimator.fusion.motion.constant_velocity import free_motion
 from estimator.fusion.motion.dead_reckoning import walk
@@ -28,6 +28,7 @@ from estimator.graph.gauge import Turning, change_pairs, pivot, turn_pairs, turn
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.right_sides import carry, carry_back
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
+from estimator.graph.symmetric import full
 from estimator.graph.triangular import inverted
 from estimator.graph.variable import Variable
 from estimator.inertial.after_gaps import find_standstill, keep_heading

@@ -17,6 +17,7 @@ from estimator.fusion import physics
 from estimator.graph.dense import Array
 from estimator.graph.ornstein_uhlenbeck import ornstein_uhlenbeck
 from estimator.graph.robust import FARTHER
+from estimator.graph.symmetric import full, take_in, upper_of
 from estimator.measurements.rssi import ANTENNA_M, DB_PER_NEPER, rssi_slope
 
 SPELL_S = 4.0
@@ -58,7 +59,7 @@ in dB: how much weaker it is made by the way, and its path-loss exponent."""
 TOLD = 13
 
 
-class Link(msgspec.Struct, frozen=True, array_like=True):
+class Link(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What the ranges of a link tell.
 
     Attributes:
@@ -72,7 +73,7 @@ class Link(msgspec.Struct, frozen=True, array_like=True):
     gain: float
 
 
-class Rival(msgspec.Struct, frozen=True, array_like=True):
+class Rival(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Where somebody is by ranges alone, and how likely it is that his unit is no good.
 
     Attributes:
@@ -135,28 +136,6 @@ def odds_of(links: Array, t: float) -> float:
         told = links[number, 2] * math.exp((links[number, 1] - t) / MEMORY_S)
         total, most = total + told, max(most, told)
     return RARE + max(total - most, LEAST_ALL)
-
-
-@njit(cache=True)
-def full(upper: Array) -> Array:
-    """A symmetric matrix, 4 × 4, from its upper triangle."""
-    found, at = np.empty((4, 4)), 0
-    for r in range(4):
-        for c in range(r, 4):
-            found[r, c] = found[c, r] = upper[at]
-            at += 1
-    return found
-
-
-@njit(cache=True)
-def upper_of(matrix: Array) -> Array:
-    """The upper triangle of a symmetric matrix, 4 × 4."""
-    found, at = np.empty(10), 0
-    for r in range(4):
-        for c in range(r, 4):
-            found[at] = matrix[r, c]
-            at += 1
-    return found
 
 
 @njit(cache=True)
@@ -234,7 +213,8 @@ def follow(x: Array, upper: Array, t: float, told: Array, gains: Array) -> tuple
     """
     covariance = full(upper)
     for r in range(len(told)):
-        x, covariance = predicted(x, covariance, told[r, EPOCH] - t)
+        if r == 0 or told[r, EPOCH] != t:
+            x, covariance = predicted(x, covariance, told[r, EPOCH] - t)
         t, outliers, noise = told[r, EPOCH], told[r, OUTLIERS], told[r, SIGMA] ** 2
         east, north = x[0] - told[r, EAST], x[1] - told[r, NORTH]
         squared, exponent = east * east + north * north + told[r, UP] ** 2 + 1e-6, told[r, EXPONENT]
@@ -262,10 +242,8 @@ def follow(x: Array, upper: Array, t: float, told: Array, gains: Array) -> tuple
         known, odd = sure / own, (1.0 - sure) * (1.0 - WILD) / (own + spread**2)
         if known + odd < NOTHING:
             continue
-        gain = across / (foretold + 1.0 / (known + odd))
-        x = x + gain * (off - excess * odd / (known + odd))
-        covariance = covariance - np.outer(gain, across)
-        covariance = 0.5 * (covariance + covariance.T)
+        pulled = off - excess * odd / (known + odd)
+        take_in(x, covariance, across, foretold + 1.0 / (known + odd), pulled)
     return x, covariance, t
 
 

@@ -17,12 +17,12 @@ from estimator.fusion.learned.rival import (
     follow,
     led_by_unit,
     odds_of,
-    upper_of,
 )
 from estimator.fusion.rows.predicted_pairs import predict_pairs
 from estimator.fusion.rows.prediction import Prediction
 from estimator.fusion.rows.rows import table_from
 from estimator.graph.dense import Array
+from estimator.graph.symmetric import upper_of
 
 AGAIN_S = 5.0
 """As long as its unit is believed a rival follows it within so many seconds: it was right until now."""

@@ -9,6 +9,7 @@ from estimator.fusion.learned import rival
 from estimator.fusion.learned.rival import Link, Rival
 from estimator.fusion.motion.constant_velocity import free_motion
 from estimator.graph.dense import Array
+from estimator.graph.symmetric import upper_of
 
 PLANE = [0, 1, 3, 4]
 RADIOS_M = np.array([[30.0, 0.0], [-10.0, 25.0], [-10.0, -25.0]])
@@ -39,7 +40,7 @@ def test_it_goes_on_as_who_has_no_unit() -> None:
 def test_it_follows_ranges_to_where_they_are_measured() -> None:
     way_m = np.column_stack([np.linspace(0.0, 10.0, 11), np.zeros(11)])
     ranges = np.array([told(i, float(t), way_m[t]) for t in range(11) for i in range(3)])
-    found, covariance, t = rival.follow(np.zeros(4), rival.upper_of(np.eye(4)), 0.0, ranges, np.empty(33))
+    found, covariance, t = rival.follow(np.zeros(4), upper_of(np.eye(4)), 0.0, ranges, np.empty(33))
     assert t == 10.0
     assert math.dist(found[:2].tolist(), way_m[-1].tolist()) < 0.3
     assert covariance[0, 0] < 0.1
@@ -47,7 +48,7 @@ def test_it_follows_ranges_to_where_they_are_measured() -> None:
 
 def test_it_follows_powers_to_where_they_are_heard() -> None:
     powers = np.array([heard(i, float(t), np.array([8.0, -6.0])) for t in range(30) for i in range(3)])
-    found, covariance, _ = rival.follow(np.zeros(4), rival.upper_of(np.eye(4)), 0.0, powers, np.empty(90))
+    found, covariance, _ = rival.follow(np.zeros(4), upper_of(np.eye(4)), 0.0, powers, np.empty(90))
     off_m = found[:2] - (8.0, -6.0)
     assert np.hypot(*off_m) < 4.0
     assert off_m @ np.linalg.solve(covariance[:2, :2], off_m) < 4.0
@@ -56,7 +57,7 @@ def test_it_follows_powers_to_where_they_are_heard() -> None:
 def test_who_foretells_a_power_gains_by_it_and_less_than_by_a_range() -> None:
     gains = np.empty(2)
     powers = np.array([heard(0, 0.0, np.zeros(2)), heard(1, 0.0, np.zeros(2), off_db=-18.0)])
-    rival.follow(np.zeros(4), rival.upper_of(np.eye(4)), 0.0, powers, gains)
+    rival.follow(np.zeros(4), upper_of(np.eye(4)), 0.0, powers, gains)
     assert gains[0] < 0.0
     assert 1.0 < gains[1] < 5.0
 
@@ -69,7 +70,7 @@ def test_a_power_is_too_weak_rather_than_too_strong() -> None:
 
 def test_an_obstructed_range_hardly_pulls_it() -> None:
     ranges = np.array([told(0, 1.0, np.zeros(2), excess_m=8.0)])
-    found, *_ = rival.follow(np.zeros(4), rival.upper_of(0.1 * np.eye(4)), 1.0, ranges, np.empty(1))
+    found, *_ = rival.follow(np.zeros(4), upper_of(0.1 * np.eye(4)), 1.0, ranges, np.empty(1))
     assert np.abs(found[:2]).max() < 0.2
 
 
@@ -89,14 +90,14 @@ def test_a_density_of_ranges_is_one() -> None:
 def test_who_foretells_a_range_gains_by_it() -> None:
     gains = np.empty(2)
     good, bad = told(0, 0.0, np.zeros(2), off_m=0.1), told(1, 0.0, np.zeros(2), off_m=-3.0)
-    rival.follow(np.zeros(4), rival.upper_of(np.eye(4)), 0.0, np.array([good, bad]), gains)
+    rival.follow(np.zeros(4), upper_of(np.eye(4)), 0.0, np.array([good, bad]), gains)
     assert gains[0] < 0.0
     assert gains[1] > 3.0
 
 
 def known(*gains: float) -> Rival:
     links = tuple(Link(i, 10.0, gain) for i, gain in enumerate(gains))
-    upper = tuple(rival.upper_of(np.eye(4)).tolist())
+    upper = tuple(upper_of(np.eye(4)).tolist())
     return Rival(10.0, (4.0, 0.0, 0.0, 0.0), upper, links, rival.odds_of(numbers(links), 10.0))
 
 
