@@ -66,9 +66,9 @@ def mounting_of(node: NodeState) -> Mounting:
 
 def reported(node: NodeState, reading: Displacement) -> Displacement:
     """A displacement, corrected by how its unit is taken to be worn."""
-    worn = mounting_of(node)
-    if worn == RIGHT:
+    if node.worn == RIGHT:
         return reading
+    worn = mounting_of(node)
     east, north, up = reading.delta_m
     return replace(reading, delta_m=(*worn.of(east, north), up), heading_rad=worn.faced(reading.heading_rad))
 

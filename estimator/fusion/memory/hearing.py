@@ -17,7 +17,7 @@ class Crossing(PairReading, tag="crossing", frozen=True):
     """`a` came into the reach of `b`, or left it: `t` is in the middle between two occasions."""
 
 
-class HeardRadio(msgspec.Struct, frozen=True, array_like=True):
+class HeardRadio(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One radio as another hears it.
 
     Attributes:
@@ -100,12 +100,12 @@ def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int)
             heard += 1
             radios[other] = HeardRadio(t, known.heard + 1, 0)
     for other, known in listener.radios.items():
+        if other in before:
+            continue
         if known.silent >= silent:
             # It is out of reach: of the many that are nothing changes until they are heard again.
-            if other in now and other not in before:
+            if other in now:
                 crossed(occasions[-1], now[other], other)
-            continue
-        if other in before:
             continue
         missed, again = known.silent + 1, other in now
         # Until it is thought to be out of reach, what is not heard of it counts as lost.

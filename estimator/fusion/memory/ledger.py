@@ -67,7 +67,10 @@ class Ledger:
 
     def add(self, table: Table, *row: float) -> None:
         """Append one row."""
-        self._open.setdefault(table, []).append(row)
+        rows = self._open.get(table)
+        if rows is None:
+            rows = self._open[table] = []
+        rows.append(row)
 
     def extend(self, table: Table, rows: Array) -> None:
         """Append rows, m × the table's columns, which nobody changes afterwards."""

@@ -97,6 +97,7 @@ class Step:
     def take(self, reading: Displacement) -> Increment | None:
         """Hold a displacement against what its unit reported before; None where that covers its epoch."""
         t, pose_t, unit_t = reading.t, self._pose_t, self._unit_t
+        raw = isinstance(reading, InertialDisplacement)
         if t < pose_t or (unit_t is not None and t <= unit_t):
             return None
         start = start_of(reading, pose_t if unit_t is None else unit_t)
@@ -112,7 +113,7 @@ class Step:
             e, n, u, length, own = e * share, n * share, u * share, length * share, duration
         elif start > pose_t:
             gap_s = min(start - pose_t, LONGEST_S)
-            untold_m2 = missed_m2(gap_s, self._missed_s, isinstance(reading, InertialDisplacement))
+            untold_m2 = missed_m2(gap_s, self._missed_s, raw)
             across = max((physics.GAP_MPS * gap_s) ** 2, untold_m2)
             up = 0.1 * across
             onward = onward_m(self._marks, gap_s, 0.0)
@@ -133,17 +134,18 @@ class Step:
         else:
             up += (physics.SCALE_SIGMA * u) ** 2
         up += self._climb_m2(reading, length)
-        walked = length if isinstance(reading, InertialDisplacement) else walked_m(length, own)
+        walked = length if raw else walked_m(length, own)
         noise = walk_noise((across, across, up), reading, walked, duration)
-        if own > STRAIGHT_S and not isinstance(reading, InertialDisplacement):
+        if own > STRAIGHT_S and not raw:
             unseen = turned_m2(own, noise[3], self.node.bias_told)
             noise = sum_of(noise, (unseen, unseen, 0.0, 0.0, 0.0, 0.0))
         if sets_off:
             noise = sum_of(noise, SET_OFF)
         if own > 0.0:
-            self._speed_mps = math.hypot(e, n) / own
+            gone_m = math.hypot(e, n)
+            self._speed_mps = gone_m / own
             if self._speed_mps > physics.GOES_MPS:
-                self._faced = e / math.hypot(e, n), n / math.hypot(e, n)
+                self._faced = e / gone_m, n / gone_m
         e, n, u = e + onward[0], n + onward[1], u + onward[2]
         self._pose_t = self._unit_t = t
         self._heading_rad, self.taken = reading.heading_rad, True

@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
@@ -18,7 +19,7 @@ from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import SILENT_S
-from estimator.fusion.rows.rival_kernels import ASKED_T, NONE, RivalUpdate, Units, units_from
+from estimator.fusion.rows.rival_kernels import ASKED_T, NONE, OF, RivalUpdate, Units, units_from
 from estimator.fusion.rows.rows import KIND
 from estimator.graph.dense import Array
 
@@ -143,12 +144,11 @@ def _by_powers(node: NodeState, odd: bool) -> bool:
 
 def _rivals(found: Array, tell: Array) -> Iterator[Rival | None]:
     """The rivals that rows of `followed` are of; None: no reading tells of the unit."""
-    links: dict[float, list[Link]] = {}
-    for unit, number, t, gain in tell.tolist():
-        links.setdefault(unit, []).append(Link(int(number), t, gain))
+    links = [Link(int(number), t, gain) for _, number, t, gain in tell.tolist()]
+    firsts = np.searchsorted(tell[:, OF], np.arange(len(found) + 1)).tolist()
     for unit, (until_t, *numbers, odds, ranged_t) in enumerate(found.tolist()):
-        told = tuple(links.get(unit, ()))
         if math.isnan(until_t):
             yield None
         else:
+            told = tuple(links[firsts[unit] : firsts[unit + 1]])
             yield Rival(until_t, tuple(numbers[:4]), tuple(numbers[4:]), told, odds, ranged_t)
