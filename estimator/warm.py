@@ -233,7 +233,7 @@ def _warm_filter() -> None:
         sums,
         1,
     )
-    crossings_in(table, 0)
+    crossings_in(table, told, newest, 0)
     graph.add_node(Variable("unit", ""), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     step = np.array([[0.0, 3.0, *(1.0,) * 10]])
     walk(step, *graph.storage(), graph.size, np.empty(6, dtype=np.intp), np.empty((6, 6)))

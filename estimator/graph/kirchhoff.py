@@ -23,12 +23,12 @@ LINE = 8
 
 
 def roomy(size: int) -> int:
-    """A capacity for so many rows and a quarter more, of an odd number of cache lines.
+    """A capacity for so many rows and an eighth more, of an odd number of cache lines.
 
     Columns of a matrix whose rows are a power of two long would fall into a few sets of the cache, and drive
     each other out.
     """
-    lines = -(-5 * size // (4 * LINE))
+    lines = -(-9 * size // (8 * LINE))
     return LINE * (lines | 1)
 
 

@@ -26,8 +26,9 @@ REACH_DB, REACH_SIGMA_DB = 10.0 * EXPONENT * math.log10(22.0), 10.0
 """Beforehand a reach is 22 m, or from 9 to 55 m."""
 EXPONENT_SIGMA = 1e-3
 SPREADS_DB2 = (np.geomspace(0.02, 0.6, 9) * EXPONENT * DB_PER_NEPER) ** 2
-"""Variances that stand for all: reaches that differ by 2 % to 60 %. Sharper than half of a step's length at
-25 m none can be told."""
+LOGARITHMS = np.log(SPREADS_DB2)
+"""Variances that stand for all, and their logarithms: reaches that differ by 2 % to 60 %. Sharper than half
+of a step's length at 25 m none can be told."""
 NOMINAL_DB = 3.0
 """The unit in which the noise of a crossing is written down before it is learned."""
 SHARED = 0.9
@@ -69,7 +70,7 @@ class Reach(msgspec.Struct, frozen=True, array_like=True):
     def sigma_db(self) -> float:
         """By how much reaches differ (dB), in the mean of its logarithm."""
         weight = np.exp(self._logs - self._logs.max())
-        return math.exp(0.5 * float((weight * np.log(SPREADS_DB2)).sum() / weight.sum()))
+        return math.exp(0.5 * float((weight * LOGARITHMS).sum() / weight.sum()))
 
     @property
     def _logs(self) -> Array:

@@ -16,7 +16,7 @@ from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.rows.gauss_newton import GOOD, PREDICTED, RESIDUAL
 from estimator.fusion.rows.rows import EXTRA, KIND, LINK, SIGMA
-from estimator.graph.dense import Array, Indices
+from estimator.graph.dense import Array
 from estimator.measurements.rssi import Rssi
 
 TELLING = ("unit", "static", "fixed")
@@ -78,32 +78,42 @@ def learn_reach(state: FusionState, table: Array, told: Array) -> None:
     start = state.graph.starts.get(path_loss_variable(REACH))
     if start is None:
         return
-    crossed = crossings_in(table, start)
-    if not len(crossed):
+    crossed = crossings_in(table, told, state.links.table, start).tolist()
+    if not crossed:
         return
     # What was crossed at the same place just before tells nothing new of how reaches differ.
-    kept = state.links.table[table[crossed, LINK].astype(np.intp), KEPT]
-    news = crossed[kept < SAME_PLACE]
-    if len(news):
-        residual, predicted, good = told[news][:, [RESIDUAL, PREDICTED, GOOD]].T
-        variance = np.array([sigma**2 for sigma in table[news, SIGMA].tolist()])
+    news = [one for kept, *one in crossed if kept < SAME_PLACE]
+    if news:
         # What each was off by before it was followed, as far as it was believed.
-        off_db = residual * (1.0 + good * predicted / variance)
-        state.reach = state.reach.with_crossings(off_db.tolist(), predicted.tolist())
+        off_db = [off * (1.0 + good * predicted / sigma**2) for off, predicted, good, sigma in news]
+        state.reach = state.reach.with_crossings(off_db, [predicted for _, predicted, *_ in news])
     _note(state)
 
 
 @njit(cache=True)
-def crossings_in(table: Array, start: int) -> Indices:
-    """Which of m readings are crossings of reaches.
+def crossings_in(table: Array, told: Array, links: Array, start: int) -> Array:
+    """What has come of those of m readings that are crossings of reaches.
 
     Through a floor one tells nothing of them: it has no link there.
 
     Args:
         table: the readings, see `rows.Row`.
+        told: what has come of them, m × 3, see `gauss_newton.RESIDUAL`.
+        links: the newest reading on each link, see `links`.
         start: first row of the reaches' states.
+
+    Returns:
+        How much of the error before each was kept, what it was off by, the variance of its prediction, the
+        probability that it is good, and its sigma; k × 5.
     """
-    return np.flatnonzero((table[:, KIND] == RSSI) & (table[:, EXTRA] == start) & (table[:, LINK] >= 0.0))
+    found, count = np.empty((len(table), 5)), 0
+    for r in range(len(table)):
+        if table[r, KIND] == RSSI and table[r, EXTRA] == start and table[r, LINK] >= 0.0:
+            found[count, 0] = links[int(table[r, LINK]), KEPT]
+            found[count, 1], found[count, 2] = told[r, RESIDUAL], told[r, PREDICTED]
+            found[count, 3], found[count, 4] = told[r, GOOD], table[r, SIGMA]
+            count += 1
+    return found[:count]
 
 
 def _note(state: FusionState) -> None:

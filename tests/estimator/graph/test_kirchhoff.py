@@ -216,7 +216,7 @@ def test_copies_share_where_blocks_stand_until_one_of_them_takes_another_in() ->
     assert list(twin.starts) == [node("a"), node("b")]
 
 
-def test_rows_have_room_for_a_quarter_more_and_an_odd_number_of_cache_lines() -> None:
+def test_rows_have_room_for_an_eighth_more_and_an_odd_number_of_cache_lines() -> None:
     for size in range(1, 1000):
-        assert 1.25 * size <= roomy(size) < 1.25 * size + 2 * LINE
+        assert 1.125 * size <= roomy(size) < 1.125 * size + 2 * LINE
         assert roomy(size) % (2 * LINE) == LINE
