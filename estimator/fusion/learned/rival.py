@@ -59,20 +59,6 @@ in dB: how much weaker it is made by the way, and its path-loss exponent."""
 TOLD = 13
 
 
-class Link(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What the ranges of a link tell.
-
-    Attributes:
-        number: of the link.
-        t: until when (s).
-        gain: log likelihood by the rival less that by the unit.
-    """
-
-    number: int
-    t: float
-    gain: float
-
-
 class Rival(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Where somebody is by ranges alone, and how likely it is that his unit is no good.
 
@@ -80,7 +66,7 @@ class Rival(msgspec.Struct, frozen=True, array_like=True, gc=False):
         t: epoch that it refers to (s).
         state: east, north (m), and both velocities (m/s).
         covariance: of these, the upper triangle.
-        links: what each link tells.
+        links: what each link tells, as `odds_of` takes it, in C order: of many nothing else is asked.
         odds: log odds that the unit is no good.
         ranged_t: epoch of the newest range that it followed (s).
     """
@@ -88,7 +74,7 @@ class Rival(msgspec.Struct, frozen=True, array_like=True, gc=False):
     t: float
     state: tuple[float, ...]
     covariance: tuple[float, ...]
-    links: tuple[Link, ...]
+    links: bytes
     odds: float
     ranged_t: float = -math.inf
 
@@ -128,7 +114,8 @@ def odds_of(links: Array, t: float) -> float:
     The link that tells most of it does not count: a breadcrumb that was kicked contradicts any way.
 
     Args:
-        links: what each tells, see `Link`, k × 3.
+        links: what each tells, k × 3: its number; until when (s); log likelihood by the rival less that by
+            the unit.
         t: at which epoch (s).
     """
     total, most = 0.0, 0.0

@@ -9,17 +9,16 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
 from estimator.fusion.learned.noise import LearnedNoise
-from estimator.fusion.learned.rival import MEMORY_S, RARE, Link, Rival
+from estimator.fusion.learned.rival import MEMORY_S, RARE, Rival
 from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import SILENT_S
-from estimator.fusion.rows.rival_kernels import ASKED_T, NONE, OF, RivalUpdate, Units, units_from
+from estimator.fusion.rows.rival_kernels import ASKED_T, NONE, RivalUpdate, Units, links_of, units_from
 from estimator.fusion.rows.rows import KIND
 from estimator.graph.dense import Array
 
@@ -61,15 +60,15 @@ def ask(state: FusionState, table: Array) -> QuestionedUnits:
     # Where nobody is asked about there is something to do only for who was.
     if all(map(math.isnan, asked_t)) and all(node.rival is None for node in nodes):
         return NOBODY
-    rows, links = [], []
-    for i, (node, t, by_powers) in enumerate(zip(nodes, asked_t, powers, strict=True)):
+    rows = []
+    for node, t, by_powers in zip(nodes, asked_t, powers, strict=True):
         rival, start = node.rival, state.graph.starts[node.position]
         if rival is None:
             rows.append((start, t, by_powers, *NONE))
             continue
         known = (rival.t, *rival.state, *rival.covariance, rival.odds, rival.ranged_t)
         rows.append((start, t, by_powers, *known))
-        links += [(i, link.number, link.t, link.gain) for link in rival.links]
+    links = [b"" if node.rival is None else node.rival.links for node in nodes]
     return QuestionedUnits(nodes, units_from(rows, links))
 
 
@@ -84,7 +83,7 @@ def answer(state: FusionState, asked: QuestionedUnits, found: RivalUpdate) -> No
     if not found.heard:
         return
     for node, asked_t, rival in zip(
-        asked.nodes, asked.told.rows[:, ASKED_T].tolist(), _rivals(found.rivals, found.links), strict=True
+        asked.nodes, asked.told.rows[:, ASKED_T].tolist(), _rivals(found), strict=True
     ):
         if math.isnan(asked_t) and node.rival is not None:
             state.nodes[node.node] = replace(node, rival=None)
@@ -142,13 +141,12 @@ def _by_powers(node: NodeState, odd: bool) -> bool:
     return unranged and (odd or known.odds > RARE + SPOKEN)
 
 
-def _rivals(found: Array, tell: Array) -> Iterator[Rival | None]:
-    """The rivals that rows of `followed` are of; None: no reading tells of the unit."""
-    links = [Link(int(number), t, gain) for _, number, t, gain in tell.tolist()]
-    firsts = np.searchsorted(tell[:, OF], np.arange(len(found) + 1)).tolist()
-    for unit, (until_t, *numbers, odds, ranged_t) in enumerate(found.tolist()):
+def _rivals(found: RivalUpdate) -> Iterator[Rival | None]:
+    """The units' rivals; None: no reading tells of the unit."""
+    for (until_t, *numbers, odds, ranged_t), links in zip(
+        found.rivals.tolist(), links_of(found), strict=True
+    ):
         if math.isnan(until_t):
             yield None
         else:
-            told = tuple(links[firsts[unit] : firsts[unit + 1]])
-            yield Rival(until_t, tuple(numbers[:4]), tuple(numbers[4:]), told, odds, ranged_t)
+            yield Rival(until_t, tuple(numbers[:4]), tuple(numbers[4:]), links, odds, ranged_t)

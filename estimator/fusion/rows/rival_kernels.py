@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -67,9 +68,24 @@ class RivalUpdate(NamedTuple):
     links: Array
 
 
-def units_from(rows: Sequence[Sequence[float]], links: Sequence[Sequence[float]]) -> Units:
-    """Units and what the links of their rivals have told, as tables."""
-    return Units(table_from(rows, ASKED), table_from(links, TELLS))
+def units_from(rows: Sequence[Sequence[float]], links: Sequence[bytes]) -> Units:
+    """Units and what the links of their rivals have told, as tables.
+
+    Args:
+        rows: of each unit, see `Units`.
+        links: of each unit, see `Rival.links`; empty: it has no rival.
+    """
+    told = np.frombuffer(b"".join(links), dtype=np.float64).reshape(-1, TELLS - 1)
+    counts = np.array([len(some) // (told.itemsize * told.shape[1]) for some in links], dtype=np.intp)
+    table = np.empty((len(told), TELLS))
+    table[:, OF], table[:, NUMBER] = np.repeat(np.arange(len(links)), counts), told
+    return Units(table_from(rows, ASKED), table)
+
+
+def links_of(found: RivalUpdate) -> list[bytes]:
+    """What the links of each unit tell after a tick, see `Rival.links`."""
+    firsts = np.searchsorted(found.links[:, OF], np.arange(len(found.rivals) + 1)).tolist()
+    return [found.links[first:last, NUMBER].tobytes() for first, last in pairwise(firsts)]
 
 
 @njit(cache=True)

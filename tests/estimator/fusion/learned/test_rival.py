@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from estimator.fusion.learned import rival
-from estimator.fusion.learned.rival import Link, Rival
+from estimator.fusion.learned.rival import Rival
 from estimator.fusion.motion.constant_velocity import free_motion
 from estimator.graph.dense import Array
 from estimator.graph.symmetric import upper_of
@@ -96,13 +96,13 @@ def test_who_foretells_a_range_gains_by_it() -> None:
 
 
 def known(*gains: float) -> Rival:
-    links = tuple(Link(i, 10.0, gain) for i, gain in enumerate(gains))
+    links = np.array([(float(i), 10.0, gain) for i, gain in enumerate(gains)]).reshape(-1, 3)
     upper = tuple(upper_of(np.eye(4)).tolist())
-    return Rival(10.0, (4.0, 0.0, 0.0, 0.0), upper, links, rival.odds_of(numbers(links), 10.0))
+    return Rival(10.0, (4.0, 0.0, 0.0, 0.0), upper, links.tobytes(), rival.odds_of(links, 10.0))
 
 
-def numbers(links: tuple[Link, ...]) -> Array:
-    return np.array([(link.number, link.t, link.gain) for link in links]).reshape(-1, 3)
+def numbers(links: bytes) -> Array:
+    return np.frombuffer(links).reshape(-1, 3).copy()
 
 
 def test_one_link_alone_tells_nothing_of_a_unit() -> None:

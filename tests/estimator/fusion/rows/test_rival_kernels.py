@@ -10,6 +10,7 @@ from estimator.fusion.learned import rival
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.rows.prediction import predict
 from estimator.fusion.rows.rival_kernels import (
+    ASKED,
     COVARIANCE,
     NONE,
     NUMBER,
@@ -21,7 +22,9 @@ from estimator.fusion.rows.rival_kernels import (
     RivalUpdate,
     T,
     Units,
+    links_of,
     told_by_links,
+    units_from,
     update_rivals,
 )
 from estimator.fusion.rows.rows import Row, table_of
@@ -124,3 +127,13 @@ def test_it_is_known_when_a_rival_was_last_ranged_however_much_was_heard_since()
     ranged_at_7 = follow(ranged(UNITS[0], 1), heard(UNITS[0], 2)).rivals
     later = follow(heard(UNITS[0], 1), pose_t=POSE_T + 1.0, rivals=ranged_at_7).rivals
     assert (silent[0, RANGED], ranged_at_7[0, RANGED], later[0, RANGED]) == (-math.inf, 7.0, 7.0)
+
+
+def test_what_links_of_several_units_tell_is_theirs_again_in_the_next_tick() -> None:
+    found = follow(ranged(UNITS[0], 1), ranged(UNITS[0], 2), ranged(UNITS[1], 4))
+    first, second = links_of(found)
+    assert np.frombuffer(first)[::3].tolist() == [1.0, 2.0]
+    assert np.frombuffer(second)[::3].tolist() == [4.0]
+    units = units_from([(0.0,) * ASKED] * 3, [first, b"", second])
+    assert units.links[:, OF].tolist() == [0.0, 0.0, 2.0]
+    assert np.array_equal(units.links[:, NUMBER], found.links[:, NUMBER])

@@ -20,7 +20,7 @@ def until(seconds: float, odds: float | None = None) -> Problem:
     state = problem.layout.state
     for i, walk in enumerate(problem.layout.walks):
         speaks = odds if walk.node.node == "ff2" else None
-        rival = None if speaks is None else Rival(seconds, NOWHERE, NOWHERE, (), speaks)
+        rival = None if speaks is None else Rival(seconds, NOWHERE, NOWHERE, b"", speaks)
         state.keep(replace(state.life(walk.number), rival=rival))
         problem.layout.walks[i] = walk._replace(node=state.life(walk.number))
     return problem
