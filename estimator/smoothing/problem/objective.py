@@ -23,7 +23,7 @@ from estimator.smoothing.problem.held_quadratic import HeldQuadratic
 from estimator.smoothing.problem.marginal_prior import MarginalPrior
 from estimator.smoothing.problem.solution import Trial
 from estimator.smoothing.problem.sparsity import Sparsity
-from estimator.smoothing.readings.curvature import add_curvature
+from estimator.smoothing.readings.curvature import NormalMatrix, Numbers, add_curvature
 from estimator.smoothing.readings.rows import Linearised, Rows
 from estimator.smoothing.readings.weights import weigh_readings
 
@@ -185,11 +185,12 @@ class Objective:
             signed: negative curvature too; see `curvature.add_curvature`.
         """
         rows, placed = self.rows, self.coupled.rows
-        numbers = faced(x, rows.readings.headings)  # once for all strands
-        told = numbers, weighted.information, weighted.residual, signed, placed.slab, placed.columns
+        estimate = faced(x, rows.readings.headings)  # once for all strands
+        weight, numbers = weighted.information * weighted.residual, Numbers(placed.slab, placed.columns)
 
         def add(strand: Strand, part: Indices) -> None:
             if len(part):
-                add_curvature(rows.readings, part, *told, strand.diagonal, strand.wide, strand.corner)
+                matrix = NormalMatrix(strand.diagonal, strand.wide, strand.corner[None])
+                add_curvature(rows.readings, part, estimate, weight, signed, numbers, matrix)
 
         chain.each(add, self.coupled.pairs)

@@ -1,5 +1,7 @@
 """The curvature of distances, added to the normal equations of a window: a loop over its pairs, compiled."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
@@ -15,19 +17,41 @@ from estimator.smoothing.readings.linearisation import Readings
 NOWHERE_M2 = 1e-6
 
 
+class Numbers(NamedTuple):
+    """Where in the normal matrix the numbers of m rows are, at least of the pairs.
+
+    Attributes:
+        slab: keyframe of each row, m.
+        columns: as `graph.assembly.scatter_rows` takes them, m × c.
+    """
+
+    slab: Integers
+    columns: Integers
+
+
+class NormalMatrix(NamedTuple):
+    """The normal matrix of a chain without its links: what is measured at an epoch couples no two keyframes.
+
+    Attributes:
+        diagonal: of the keyframes, k × n × n.
+        wide: border and gradient of each keyframe, k × n × (s + 1).
+        corner: of the border, 1 × s × s.
+    """
+
+    diagonal: Array
+    wide: Array
+    corner: Array
+
+
 @njit(cache=True, nogil=True)
 def add_curvature(
     readings: Readings,
     chosen: Integers,
-    numbers: Array,
-    information: Array,
-    residual: Array,
+    estimate: Array,
+    weight: Array,
     signed: bool,
-    slab: Integers,
-    columns: Integers,
-    diagonal: Array,
-    wide: Array,
-    corner: Array,
+    placed: Numbers,
+    matrix: NormalMatrix,
 ) -> None:
     """Add the curvature of distances, which Gauss-Newton leaves out: −P⁻¹ r ∂²h/∂x².
 
@@ -40,20 +64,18 @@ def add_curvature(
     Args:
         readings: of the window.
         chosen: which pairs.
-        numbers: the estimate, see `ends.faced`.
-        information: P⁻¹ of each pair, m at least.
-        residual: z − h(x) as it is weighed, m at least.
+        estimate: see `ends.faced`.
+        weight: P⁻¹ r of each pair, r as it is weighed, m at least.
         signed: take negative curvature along the floor too; else only what is positive.
-        slab: keyframe of each pair, m at least.
-        columns: as `graph.assembly.scatter_rows` takes them, m at least.
-        diagonal: k × n × n, changed.
-        wide: border and gradient of each keyframe, k × n × (s + 1); the border is changed.
-        corner: s × s, changed.
+        placed: where the rows are in the normal matrix.
+        matrix: is changed.
     """
     a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
     bend, both = np.empty((3, 3)), np.empty((3, 3))
     pulled_a, pulled_b = np.empty((3, 3)), np.empty((3, 3))
-    width, corners = diagonal.shape[1], corner.reshape(1, *corner.shape)
+    slab, columns = placed
+    diagonal, wide, corner = matrix
+    width = diagonal.shape[1]
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
     for i in chosen:
@@ -61,21 +83,15 @@ def add_curvature(
         if kind > RSSI:
             continue
         by_a[:], by_b[:] = 0.0, 0.0
-        place_end(ends_a, i, numbers, a, by_a)
-        place_end(ends_b, i, numbers, b, by_b)
+        place_end(ends_a, i, estimate, a, by_a)
+        place_end(ends_b, i, estimate, b, by_b)
         e, n, u = a[0] - b[0], a[1] - b[1], a[2] - b[2]
-        level, squared = e * e + n * n, e * e + n * n + u * u
+        level = e * e + n * n
         if level < NOWHERE_M2:
             continue
-        state = numbers[extra[i, 0 if kind == RANGE else 1], 0]
-        bent = range_slope(squared, state) if kind == RANGE else rssi_slope(squared, state)
-        across = -information[i] * residual[i] * bent
-        along = 0.0
-        if kind == RSSI:
-            along = across * (1.0 - 2.0 * squared / (squared + ANTENNA_M * ANTENNA_M))
-        upwards = max(across, 0.0)
-        if not signed:
-            across, along = upwards, max(along, 0.0)
+        squared = level + u * u
+        state = estimate[extra[i, 0 if kind == RANGE else 1], 0]
+        across, upwards, along = bends(kind, squared, state, weight[i], signed)
         if across == 0.0 and upwards == 0.0 and along == 0.0:
             continue
         curvature_at(e, n, u, across, upwards, along, bend)
@@ -84,13 +100,13 @@ def add_curvature(
         # Many readings are made at their keyframes: from there nothing has been turned.
         a_turns, b_turns = a_moves and turns(by_a), b_moves and turns(by_b)
         if a_moves:
-            add_block(diagonal, at, first, first, bend, 1.0)
-            if a_turns:
-                add_turned(diagonal, at, first, bend, by_a, pulled_a, both)
+            add_moving(diagonal, at, first, bend, by_a, pulled_a, a_turns, both)
+        elif first >= width:
+            add_block(corner, 0, first - width, first - width, bend, 1.0)
         if b_moves:
-            add_block(diagonal, at, second, second, bend, 1.0)
-            if b_turns:
-                add_turned(diagonal, at, second, bend, by_b, pulled_b, both)
+            add_moving(diagonal, at, second, bend, by_b, pulled_b, b_turns, both)
+        elif second >= width:
+            add_block(corner, 0, second - width, second - width, bend, 1.0)
         if a_moves and b_moves:
             add_both(diagonal, at, first, second, bend, -1.0)
             if a_turns:
@@ -100,20 +116,31 @@ def add_curvature(
             if a_turns and b_turns:
                 multiply_across(by_a, pulled_b, both)
                 add_both(diagonal, at, first + PLACES, second + PLACES, both, -1.0)
-        if first >= width:
-            add_block(corners, 0, first - width, first - width, bend, 1.0)
-            if b_moves:
-                add_block(wide, at, second, first - width, bend, -1.0)
-                if b_turns:
-                    add_across(wide, at, second + PLACES, first - width, pulled_b, -1.0)
-        if second >= width:
-            add_block(corners, 0, second - width, second - width, bend, 1.0)
-            if a_moves:
-                add_block(wide, at, first, second - width, bend, -1.0)
-                if a_turns:
-                    add_across(wide, at, first + PLACES, second - width, pulled_a, -1.0)
-            elif first >= width:
-                add_both(corners, 0, first - width, second - width, bend, -1.0)
+        elif a_moves and second >= width:
+            add_to_border(wide, at, first, second - width, bend, pulled_a, a_turns)
+        elif b_moves and first >= width:
+            add_to_border(wide, at, second, first - width, bend, pulled_b, b_turns)
+        elif first >= width and second >= width:
+            add_both(corner, 0, first - width, second - width, bend, -1.0)
+
+
+@njit(cache=True, forceinline=True)
+def bends(kind: int, squared: float, state: float, weight: float, signed: bool) -> tuple[float, float, float]:
+    """Curvature of the cost of a pair across its line of sight along the floor, upwards, and along it (m⁻²).
+
+    Args:
+        kind: `RANGE`, or `RSSI`.
+        squared: its distance squared (m²).
+        state: what its slope depends on: the scale error of ranges, or n.
+        weight: P⁻¹ r.
+        signed: negative curvature along the floor too; else only what is positive.
+    """
+    bent = range_slope(squared, state) if kind == RANGE else rssi_slope(squared, state)
+    across, along = -weight * bent, 0.0
+    if kind == RSSI:
+        along = across * (1.0 - 2.0 * squared / (squared + ANTENNA_M * ANTENNA_M))
+    upwards = max(across, 0.0)
+    return (across, upwards, along) if signed else (upwards, upwards, max(along, 0.0))
 
 
 @njit(cache=True)
@@ -199,23 +226,36 @@ def multiply_across(one: Array, other: Array, product: Array) -> None:
 
 
 @njit(cache=True, forceinline=True)
-def add_turned(
-    targets: Array, at: int, first: int, bend: Array, turned: Array, pulled: Array, both: Array
+def add_moving(
+    diagonal: Array, at: int, first: int, bend: Array, by: Array, pulled: Array, turned: bool, both: Array
 ) -> None:
-    """Add what the block of a moving end has besides its place: B T, its transpose, and Tᵀ B T.
+    """Add the block of an end that moves: B, and where T is not nil B T, its transpose, and Tᵀ B T.
 
     Put where it is called, see `ends.place_end`.
 
     Args:
-        targets: of the keyframes, k × n × n, changed.
+        diagonal: of the keyframes, k × n × n, changed.
         at: its keyframe.
         first: the first of its numbers.
         bend: B, curvature by its place, 3 × 3.
-        turned: T, derivatives of its place by its last three numbers, 3 × 3.
+        by: T, derivatives of its place by its last three numbers, 3 × 3.
         pulled: takes B T, 3 × 3.
+        turned: whether T is not nil.
         both: is used, 3 × 3.
     """
-    multiply(bend, turned, pulled)
-    add_both(targets, at, first, first + PLACES, pulled, 1.0)
-    multiply_across(turned, pulled, both)
-    add_block(targets, at, first + PLACES, first + PLACES, both, 1.0)
+    add_block(diagonal, at, first, first, bend, 1.0)
+    if turned:
+        multiply(bend, by, pulled)
+        add_both(diagonal, at, first, first + PLACES, pulled, 1.0)
+        multiply_across(by, pulled, both)
+        add_block(diagonal, at, first + PLACES, first + PLACES, both, 1.0)
+
+
+@njit(cache=True, forceinline=True)
+def add_to_border(
+    wide: Array, at: int, first: int, lasting: int, bend: Array, pulled: Array, turned: bool
+) -> None:
+    """Add what couples an end that moves, from its first number on, to one that lasts."""
+    add_block(wide, at, first, lasting, bend, -1.0)
+    if turned:
+        add_across(wide, at, first + PLACES, lasting, pulled, -1.0)
