@@ -26,7 +26,7 @@ class Level(NamedTuple):
 
 
 def most_probable(
-    levels: Sequence[tuple[int, str, float]], up_m: float, up_variance_m2: float, body_m: float = 0.0
+    levels: Sequence[tuple[int, str, float]], up_m: float, up_variance_m2: float
 ) -> Level | None:
     """The storey on whose floor a node most probably stands: that of its height; None where none are known.
 
@@ -38,7 +38,6 @@ def most_probable(
         levels: integer storey, spoken name and height of its floor (m) of each, in any order.
         up_m: estimated height (m).
         up_variance_m2: its variance (m²).
-        body_m: how high over its floor the node is carried (m).
     """
     storeys = sorted(levels, key=lambda item: item[2])
     if not storeys:
@@ -49,10 +48,10 @@ def most_probable(
     edges += [(below + above) / 2.0 for below, above in pairwise(floors)]
     edges.append(floors[-1] + heights[-1] / 2.0)
     sigma = max(sqrt(max(up_variance_m2, 0.0)), 1e-3)
-    under = [_normal((edge + body_m - up_m) / sigma) for edge in edges]
+    under = [_normal((edge - up_m) / sigma) for edge in edges]
     shares = [until - since for since, until in pairwise(under)]
     # Not the largest share: among storeys that differ in height it would change while nothing is heard.
-    best = sum(edge + body_m < up_m for edge in edges[1:-1])
+    best = sum(edge < up_m for edge in edges[1:-1])
     level, name, _ = storeys[best]
     inside = sum(shares)
     return Level(level, name, min(max(shares[best] / inside, 0.0), 1.0) if inside > NOWHERE else 1.0)

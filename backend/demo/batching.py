@@ -30,16 +30,15 @@ def gateways_of(reports: Sequence[Report]) -> list[str]:
     return sorted({report.gateway for report in reports})
 
 
-def batches_of(reports: Sequence[Report], gateway: str, window_s: float = WINDOW_S) -> Iterator[Batch]:
-    """The batches of one gateway, in order.
+def batches_of(reports: Sequence[Report], gateway: str) -> Iterator[Batch]:
+    """The batches of one gateway, in order: each holds what came to it in `WINDOW_S`.
 
     Args:
         reports: of all gateways, in order of posting.
         gateway: which one.
-        window_s: a batch holds what came to the gateway in so many seconds.
     """
     gathered: list[AnyReading] = []
-    due_s = window_s
+    due_s = WINDOW_S
     for report in reports:
         if report.gateway != gateway:
             continue
@@ -47,7 +46,7 @@ def batches_of(reports: Sequence[Report], gateway: str, window_s: float = WINDOW
             if gathered:
                 yield Batch(due_s, tuple(gathered))
             gathered = []
-            due_s = (report.sent_s // window_s + 1) * window_s
+            due_s = (report.sent_s // WINDOW_S + 1) * WINDOW_S
         gathered.append(report.reading)
     if gathered:
         yield Batch(due_s, tuple(gathered))

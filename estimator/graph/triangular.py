@@ -147,10 +147,10 @@ def halved(matrix: Array, order: Indices, first: int, factor: Array, unscale: Ar
 
 
 @njit(cache=True, error_model="numpy")
-def forward(factor: Array, right: Array, first: int) -> None:
-    """Put U⁻ᵀ r in the place of r, n, whose numbers before `first` are nil."""
+def forward(factor: Array, right: Array) -> None:
+    """Put U⁻ᵀ r in the place of r, n."""
     n = len(right)
-    for i in range(first, n):
+    for i in range(n):
         right[i] /= factor[i, i]
         known = right[i]
         for j in range(i + 1, n):
@@ -202,7 +202,7 @@ def backward(factor: Array, right: Array) -> None:
 def solved(factor: Array, unscale: Array, right: Array) -> Array:
     """A⁻¹ r, n, of a matrix that has been `factorised`."""
     answer = right * unscale
-    forward(factor, answer, 0)
+    forward(factor, answer)
     backward(factor, answer)
     return answer * unscale
 

@@ -43,12 +43,13 @@ GRAVITY_MPS2 = 9.80665
 STANDARD_K = 288.15
 
 
-def height_above(reference_pa: float, pressure_pa: float, temperature_k: float = STANDARD_K) -> float:
+def height_above(reference_pa: float, pressure_pa: float) -> float:
     """Height of one barometer over another (m), by the hypsometric equation R T / g · ln(p_ref / p).
+
+    Where the air between is 10 K warmer or colder than in the standard atmosphere, it is 3.5 % wrong.
 
     Args:
         reference_pa: air pressure at the reference (Pa).
         pressure_pa: air pressure at the node (Pa).
-        temperature_k: mean temperature of the air between (K): 10 K wrong is 3.5 % of the height.
     """
-    return GAS_CONSTANT * temperature_k / GRAVITY_MPS2 * math.log(reference_pa / pressure_pa)
+    return GAS_CONSTANT * STANDARD_K / GRAVITY_MPS2 * math.log(reference_pa / pressure_pa)

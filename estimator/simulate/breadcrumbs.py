@@ -7,6 +7,9 @@ import numpy as np
 from estimator.simulate.base import TrueTrack, static_track
 
 BESIDE_M = 0.3
+SPACING_M = 12.0, 15.0
+"""Of the way of who drops them, at random between these."""
+KICKED_M = 4.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +35,11 @@ def drop_along(
     truth: TrueTrack,
     rng: np.random.Generator,
     until_s: float,
-    spacing_m: tuple[float, float] = (12.0, 15.0),
 ) -> list[Dropped]:
-    """A breadcrumb each `spacing_m` of the way that `by` walks until `until_s`, named `prefix` and number."""
+    """A breadcrumb each `SPACING_M` of the way that `by` walks until `until_s`, named `prefix` and number."""
     way_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(truth.position_m, axis=0), axis=1))])
     dropped: list[Dropped] = []
-    at_m = float(rng.uniform(*spacing_m)) / 2
+    at_m = float(rng.uniform(*SPACING_M)) / 2
     while True:
         tick = int(np.searchsorted(way_m, at_m))
         if tick >= len(way_m) or truth.t_s[tick] > until_s:
@@ -45,7 +47,7 @@ def drop_along(
         dropped.append(
             drop_at(f"{prefix}{len(dropped) + 1}", by, truth, round(float(truth.t_s[tick]), 3), rng)
         )
-        at_m += float(rng.uniform(*spacing_m))
+        at_m += float(rng.uniform(*SPACING_M))
 
 
 def drop_at(node: str, by: str, truth: TrueTrack, t_s: float, rng: np.random.Generator) -> Dropped:
@@ -59,9 +61,9 @@ def drop_at(node: str, by: str, truth: TrueTrack, t_s: float, rng: np.random.Gen
     return Dropped(node, by, t_s, place)
 
 
-def kicked(crumb: Dropped, t_s: float, rng: np.random.Generator, by_m: float = 4.0) -> Dropped:
-    """`crumb`, which slides `by_m` east or west along the floor at `t_s`, within half a second."""
-    slide = np.array([by_m * (1.0 if rng.random() < 0.5 else -1.0), 0.0, 0.0])
+def kicked(crumb: Dropped, t_s: float, rng: np.random.Generator) -> Dropped:
+    """`crumb`, which slides `KICKED_M` east or west along the floor at `t_s`, within half a second."""
+    slide = np.array([KICKED_M * (1.0 if rng.random() < 0.5 else -1.0), 0.0, 0.0])
     start, end = crumb.truth.position_m[0], crumb.truth.position_m[0] + slide
     moved = TrueTrack(
         np.array([crumb.t_s, t_s, t_s + 0.5, crumb.truth.t_s[-1]]),

@@ -51,12 +51,12 @@ class Room:
         return [self.inside(*corner) for corner in corners]
 
 
-def corridor(x_m: float, level: int, beside_m: float = 0.0) -> Point:
+def corridor(x_m: float, level: int, beside_m: float) -> Point:
     """A point in the corridor, `beside_m` north of its middle (m)."""
     return (x_m, beside_m, level * STOREY_M)
 
 
-def climb(stairwell: str, level: int, to_level: int, beside_m: float = 0.0) -> list[Point]:
+def climb(stairwell: str, level: int, to_level: int, beside_m: float) -> list[Point]:
     """The way by a stairwell from the corridor of `level` to that of `to_level`: two flights a storey."""
     x = STAIRS_X_M[stairwell]
     way = [corridor(x - 0.5, level, beside_m), (x - 0.5, CORRIDOR_M + 1.0, level * STOREY_M)]

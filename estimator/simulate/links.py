@@ -12,6 +12,7 @@ from estimator.simulate.radio import PathLoss, Uwb
 
 Crossings = Callable[[FloatArray, FloatArray], FloatArray]
 """How many walls (or floors) lie between points, n × 3 each (m) → n."""
+NEAREST = 2
 
 
 def no_obstacles(a_m: FloatArray, b_m: FloatArray) -> FloatArray:
@@ -96,9 +97,8 @@ def range_readings(
     uwb: Uwb,
     site: Site,
     rng: np.random.Generator,
-    nearest: int = 2,
 ) -> list[Range]:
-    """UWB ranges of `node` at epochs `t_s` to the `nearest` radios that answer; arguments as above."""
+    """UWB ranges of `node` at epochs `t_s` to the `NEAREST` radios that answer; arguments as above."""
     names, ranged = _over_links(
         node, radios, t_s, lambda d, walls, floors: uwb.ranged_m(d, walls, floors, rng), site, uwb.range_m
     )
@@ -111,7 +111,7 @@ def range_readings(
             range_m=round(float(ranged[row, epoch]), 3),
             technology="uwb",
         )
-        for epoch, row in np.argwhere((~np.isnan(ranged) & (rank < nearest)).T)
+        for epoch, row in np.argwhere((~np.isnan(ranged) & (rank < NEAREST)).T)
     ]
 
 

@@ -42,18 +42,17 @@ class Pooled(NamedTuple):
     rmse_m: float
 
 
-def run(data: Path, names: Sequence[str] = CASES, seeds: int = SEEDS) -> None:
+def run(data: Path, names: Sequence[str] = CASES) -> None:
     """Measure, and print a table a case.
 
     Args:
         data: the folder that holds the data sets' folders.
         names: the cases.
-        seeds: of each scenario.
     """
     warm()
     print(HEAD)
     for name in names:
-        cases = [case_of(name, seed, data) for seed in range(seeds if is_simulated(name) else 1)]
+        cases = [case_of(name, seed, data) for seed in range(SEEDS if is_simulated(name) else 1)]
         print(report(name, pooled(cases)), flush=True)
 
 

@@ -145,7 +145,7 @@ def _enter_single(
     value: float,
     sigma: float,
     noise: Mixture,
-    read_by: str | None = None,
+    read_by: str | None,
 ) -> None:
     source = -1 if read_by is None else state.source(read_by)
     state.ledger.add("singles", t, node.index, axis, value, sigma, physics.NOISES.index(noise), source)

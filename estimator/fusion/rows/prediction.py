@@ -74,7 +74,7 @@ def predict(table: Array, matrix: Array, vector: Array, x: Array) -> Prediction:
         variances(own, jacobian, predicted)
         if half.any():
             half *= unscale[:first]
-            forward(factor[:first, :first], half, 0)
+            forward(factor[:first, :first], half)
             for i in range(first):
                 for c in range(k):
                     pull[c] -= factor[i, first + c] * half[i] / unscale[first + c]

@@ -81,7 +81,7 @@ def fit_track(ranged: RangedTrack, basis: Array, led: bool, start: Array, known:
             add(along[i], weight, pulled, matrix, right)
         if not cholesky(matrix, 0, len(matrix)):
             break
-        forward(matrix, right, 0)
+        forward(matrix, right)
         farthest = 0.0
         for r in range(n - 1, -1, -1):
             for c in range(r + 1, n):

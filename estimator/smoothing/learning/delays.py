@@ -46,7 +46,7 @@ AGAIN, LONGEST_S = 0.5, 60.0
 """It is asked again after this share of the window, or where something is suspicious, with each solution."""
 
 
-def doubt_delays(state: FusionState, problem: Problem, solved: Solution, other: float = -math.inf) -> None:
+def doubt_delays(state: FusionState, problem: Problem, solved: Solution, other: float) -> None:
     """Trust no radio any longer that is likely to be off: its ranges become a technology by themselves.
 
     Args:

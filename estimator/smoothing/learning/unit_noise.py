@@ -82,9 +82,7 @@ def learn(
     return found
 
 
-def learn_walks(
-    state: FusionState, problem: Problem, solved: Solution, doubts: Doubts, most: float = STEP
-) -> None:
+def learn_walks(state: FusionState, problem: Problem, solved: Solution, doubts: Doubts, most: float) -> None:
     """Move each unit's noise factors along their score.
 
     Args:

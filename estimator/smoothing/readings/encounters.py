@@ -26,22 +26,20 @@ def candidates(t: Array, link: Array, value: Array) -> NDArray[np.bool_]:
         value: powers, m (dBm).
     """
     if (t[:-1] <= t[1:]).all():
-        return strongest(t, link, value, SPAN_S, LEAST)
+        return strongest(t, link, value)
     order, found = np.argsort(t, kind="mergesort"), np.zeros(len(t), dtype=np.bool_)
-    found[order] = strongest(t[order], link[order], value[order], SPAN_S, LEAST)
+    found[order] = strongest(t[order], link[order], value[order])
     return found
 
 
 @njit(cache=True)
-def strongest(t: Array, link: Array, value: Array, span: float, least: int) -> NDArray[np.bool_]:
-    """Which values are the largest of their link within `span` before and after, m.
+def strongest(t: Array, link: Array, value: Array) -> NDArray[np.bool_]:
+    """Which values are the largest of their link within `SPAN_S` before and after, m, if there are `LEAST`.
 
     Args:
-        t: ascending, m.
+        t: ascending, m (s).
         link: number of the link of each, m.
         value: m.
-        span: in the unit of `t`.
-        least: there must be so many values within the span.
     """
     order, found = link_by_link(link), np.zeros(len(t), dtype=np.bool_)
     for place in range(len(t)):
@@ -50,11 +48,11 @@ def strongest(t: Array, link: Array, value: Array, span: float, least: int) -> N
             beside = place + step
             while best and 0 <= beside < len(t):
                 j = order[beside]
-                if link[j] != link[i] or abs(t[j] - t[i]) > span:
+                if link[j] != link[i] or abs(t[j] - t[i]) > SPAN_S:
                     break
                 near, best = near + 1, not value[j] > value[i]
                 beside += step
-        found[i] = best and near >= least
+        found[i] = best and near >= LEAST
     return found
 
 

@@ -256,10 +256,6 @@ class Rows:
         found: Array = self._readings.ahead * x[self._readings.extra[:, 2]]
         return found
 
-    def linearise(self, x: Array) -> Linearised:
-        """Residuals and derivatives at an estimate x, flat."""
-        return Linearised(self.residual(x), lambda: self.jacobian(x))
-
     def residual(self, x: Array) -> Array:
         """Residuals z − h(x) − shift at an estimate x, flat."""
         found = residuals(self._readings, x) - self.shift

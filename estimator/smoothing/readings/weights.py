@@ -12,7 +12,7 @@ SLACK_DB_PER_M = 4.0
 """What a metre makes of a signal's power a few metres away."""
 
 
-def weigh_readings(rows: Rows, residual: Array, slack_m: float = 0.0, doubt: Array | None = None) -> Weighted:
+def weigh_readings(rows: Rows, residual: Array, slack_m: float, doubt: Array | None) -> Weighted:
     """E-step of the readings' noise, as large as the estimate may be off.
 
     Else readings a metre off pull with all their weight (graduated non-convexity, Blake, Zisserman).

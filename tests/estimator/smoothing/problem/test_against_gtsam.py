@@ -82,7 +82,7 @@ class Blocks:
     def move(self, x: Array) -> None:
         """Linearise all at once: what a factor says depends on its own keys only."""
         self.at = x
-        self.linear, self.motions = self.problem.rows.linearise(x), self.problem.motions(x)
+        self.linear, self.motions = self.problem.linearise(x), self.problem.motions(x)
 
 
 def motion_factors(blocks: Blocks, frozen: Array) -> list[Any]:
@@ -172,7 +172,7 @@ def ranges_to_unknown_beacons() -> list[AnyReading]:
 
 def misfit(problem: Problem, x: Array) -> float:
     """The cost but for its constant: half the sum of squares."""
-    linear = problem.rows.linearise(x)
+    linear = problem.linearise(x)
     return problem.cost(x, linear.residual, problem.motions(x)) - float(np.log(problem.rows.sigma).sum())
 
 
