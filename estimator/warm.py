@@ -21,13 +21,14 @@ from estimator.fusion.rows import rival_kernels
 from estimator.fusion.rows.range_curvature import arc_error
 from estimator.fusion.rows.rows import FIELDS, ONE
 from estimator.fusion.update import ask_and_take_in
-from estimator.graph.assembly import add_motion, add_part, couple, localise, scatter_rows
+from estimator.graph.assembly import add_motion, add_part, couple, localise
 from estimator.graph.chain_kernels import eliminate, selected_inverse, substitute, take_off
 from estimator.graph.dense import factorise, inverse
 from estimator.graph.gauge import Turning, change_pairs, pivot, turn_pairs, turned_along, turning
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.right_sides import carry, carry_back
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
+from estimator.graph.scatter import scatter_rows
 from estimator.graph.symmetric import full
 from estimator.graph.triangular import inverted
 from estimator.graph.variable import Variable

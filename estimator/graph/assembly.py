@@ -1,4 +1,4 @@
-"""Rows of readings and motions added to the blocks of a chain, compiled."""
+"""Rows of readings put into groups, and motions added to the blocks of a chain, compiled."""
 
 import numpy as np
 from numba import njit
@@ -76,66 +76,6 @@ def localise(
         order[following[group[r]]] = r
         following[group[r]] += 1
     return found, order, ends
-
-
-@njit(cache=True, nogil=True)
-def scatter_rows(
-    chosen: Integers,
-    slab: Integers,
-    columns: Integers,
-    jacobian: Array,
-    information: Array,
-    residual: Array,
-    diagonal: Array,
-    wide: Array,
-    corner: Array,
-    corner_gradient: Array,
-) -> None:
-    """Add HᵀP⁻¹H and HᵀP⁻¹r of some of m rows to a chain.
-
-    Args:
-        chosen: the rows to be added.
-        slab: keyframe of each row, m; any where it touches none.
-        columns: which numbers each row depends on, m × c: those of the keyframe first (below its width),
-            those of the border after them; −1: unused.
-        jacobian: derivatives, m × c.
-        information: P⁻¹, m.
-        residual: z − h(x), m.
-        diagonal: k × n × n, changed.
-        wide: border and gradient of each keyframe, k × n × (s + 1), changed.
-        corner: s × s, changed.
-        corner_gradient: s, changed.
-    """
-    width, last = diagonal.shape[1], len(corner_gradient)
-    most = columns.shape[1]
-    moving, lasting = np.empty(most, dtype=np.uint64), np.empty(most, dtype=np.uint64)
-    by_moving, by_lasting = np.empty(most), np.empty(most)
-    for r in chosen:
-        m, s = 0, 0
-        for a in range(most):
-            at, slope = columns[r, a], jacobian[r, a]
-            if at < 0 or slope == 0.0:
-                continue
-            if at < width:
-                moving[m], by_moving[m] = at, slope
-                m += 1
-            else:
-                lasting[s], by_lasting[s] = at - width, slope
-                s += 1
-        square, beside = diagonal[slab[r]], wide[slab[r]]
-        for a in range(m):
-            own, across = square[moving[a]], beside[moving[a]]
-            pulled = by_moving[a] * information[r]
-            across[last] += pulled * residual[r]
-            for b in range(m):
-                own[moving[b]] += pulled * by_moving[b]
-            for b in range(s):
-                across[lasting[b]] += pulled * by_lasting[b]
-        for a in range(s):
-            own, pulled = corner[lasting[a]], by_lasting[a] * information[r]
-            corner_gradient[lasting[a]] += pulled * residual[r]
-            for b in range(s):
-                own[lasting[b]] += pulled * by_lasting[b]
 
 
 @njit(cache=True)

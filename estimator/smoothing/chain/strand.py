@@ -10,10 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from estimator.graph.assembly import add_motion, scatter_rows
+from estimator.graph.assembly import add_motion
 from estimator.graph.chain_kernels import Integers, eliminate, selected_inverse, substitute, take_off
 from estimator.graph.dense import Array, mended
 from estimator.graph.right_sides import carry, carry_back
+from estimator.graph.scatter import scatter_rows
 from estimator.smoothing.chain.groups import Group, GroupedReadings
 from estimator.smoothing.keyframes.walks import Motion
 

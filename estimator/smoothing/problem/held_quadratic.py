@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from estimator.graph.assembly import scatter_rows
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.graph.robust import Weighted
+from estimator.graph.scatter import scatter_rows
 from estimator.smoothing.chain.chain import Chain
 
 

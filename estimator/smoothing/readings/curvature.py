@@ -22,7 +22,7 @@ class Numbers(NamedTuple):
 
     Attributes:
         slab: keyframe of each row, m.
-        columns: as `graph.assembly.scatter_rows` takes them, m × c.
+        columns: as `graph.scatter.scatter_rows` takes them, m × c.
     """
 
     slab: Integers

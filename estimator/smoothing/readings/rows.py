@@ -65,7 +65,7 @@ class Rows:
     Attributes:
         t: epoch of each row, m (s).
         slab: keyframe of each row, m.
-        columns: what each depends on, m × 15, as `graph.chain_kernels.scatter_rows` takes it.
+        columns: what each depends on, m × 15, as `graph.scatter.scatter_rows` takes it.
         sigma: standard deviation of the good noise, m.
         told: the same by technology and link alone, wherever both ends are, m.
         shift: what they are thought to be too long by, m.
