@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from estimator.graph.chain_kernels import Integers
+from estimator.graph.chain_kernels import NARROW, Integers
 from estimator.graph.dense import Array
 
 
@@ -109,37 +109,44 @@ def add_motion(
     """Add the motion of one node to a chain: x' − F x = r with information Q⁻¹, step after step.
 
     Args:
-        block: which of the keyframe's blocks of b numbers is the node's.
+        block: which of the keyframe's blocks of six numbers is the node's.
         first: keyframe that its first step leaves from.
-        transition: F, m × b × b.
-        information: Q⁻¹, m × b × b.
-        residual: r, m × b.
+        transition: F, m × 6 × 6.
+        information: Q⁻¹, m × 6 × 6.
+        residual: r, m × 6.
         diagonal: k × n × n, changed.
-        link: (k − 1) × blocks × b × b, changed.
+        link: (k − 1) × blocks × 6 × 6, changed.
         wide: k × n × (s + 1), its last column changed.
     """
-    m, size = residual.shape
-    at, last = block * size, wide.shape[2] - 1
-    pulled, square = np.empty((size, size)), np.empty((size, size))
-    for step in range(m):
+    at, last = np.uint64(block * NARROW), wide.shape[2] - 1
+    pulled = np.empty((NARROW, NARROW))  # Fᵀ Q⁻¹
+    for step in range(len(residual)):
         before, after = first + step, first + step + 1
-        known, way = information[step], transition[step]
-        pulled[:], square[:] = 0.0, 0.0
-        # Most of F is nil.
-        for i in range(size):
-            for r in range(size):
-                if way[i, r] != 0.0:
-                    for c in range(size):
-                        pulled[r, c] += way[i, r] * known[i, c]
-        for i in range(size):
-            for c in range(size):
-                if way[i, c] != 0.0:
-                    for r in range(size):
-                        square[r, c] += pulled[r, i] * way[i, c]
-        for r in range(size):
-            for c in range(size):
-                diagonal[before, at + r, at + c] += square[r, c]
-                diagonal[after, at + r, at + c] += known[r, c]
-                link[before, block, c, r] -= pulled[r, c]
-                wide[before, at + r, last] += pulled[r, c] * residual[step, c]
-                wide[after, at + r, last] -= known[r, c] * residual[step, c]
+        # Most of F is nil: to look where takes longer than sums of six in registers.
+        for r in range(NARROW):
+            a, b, c = transition[step, 0, r], transition[step, 1, r], transition[step, 2, r]
+            d, e, f = transition[step, 3, r], transition[step, 4, r], transition[step, 5, r]
+            for i in range(NARROW):
+                total = a * information[step, 0, i] + b * information[step, 1, i]
+                total += c * information[step, 2, i]
+                total += d * information[step, 3, i]
+                total += e * information[step, 4, i]
+                pulled[r, i] = total + f * information[step, 5, i]
+        for r in range(NARROW):
+            row = at + np.uint64(r)
+            a, b, c = pulled[r, 0], pulled[r, 1], pulled[r, 2]
+            d, e, f = pulled[r, 3], pulled[r, 4], pulled[r, 5]
+            for i in range(NARROW):
+                total = a * transition[step, 0, i] + b * transition[step, 1, i]
+                total += c * transition[step, 2, i]
+                total += d * transition[step, 3, i]
+                total += e * transition[step, 4, i]
+                diagonal[before, row, at + np.uint64(i)] += total + f * transition[step, 5, i]
+            for i in range(NARROW):
+                diagonal[after, row, at + np.uint64(i)] += information[step, r, i]
+                link[before, block, i, r] -= pulled[r, i]
+            here, there = wide[before, row, last], wide[after, row, last]
+            for i in range(NARROW):
+                here += pulled[r, i] * residual[step, i]
+                there -= information[step, r, i] * residual[step, i]
+            wide[before, row, last], wide[after, row, last] = here, there
