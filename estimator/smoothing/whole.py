@@ -196,7 +196,8 @@ def _layout(state: FusionState) -> Layout:
 def _branch_moved(problem: Problem, solved: Solution, moves: Sequence[MovedNode]) -> None:
     """Branch moved nodes: each begins at its new place, all others as they are in the solution."""
     layout, state = problem.layout, problem.layout.state
-    hand_back(state, layout, solved, solved.chain.remainder(layout.length - 1).matrix)
+    # Who asked which places were told wrongly has eliminated the solution's own equations to their end.
+    hand_back(state, layout, solved, solved.assemble().remainder(layout.length - 1).matrix)
     keep_keyframes(state, layout, solved.x)
     for moved in moves:
         branch(state, moved)
