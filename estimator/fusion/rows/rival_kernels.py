@@ -1,6 +1,7 @@
 """What a tick's ranges and powers make of the rivals of units, compiled as one call: see `learned.rival`."""
 
 import math
+from bisect import bisect_left
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -75,16 +76,19 @@ def units_from(rows: Sequence[Sequence[float]], links: Sequence[bytes]) -> Units
         rows: of each unit, see `Units`.
         links: of each unit, see `Rival.links`; empty: it has no rival.
     """
-    told = np.frombuffer(b"".join(links), dtype=np.float64).reshape(-1, TELLS - 1)
-    counts = np.array([len(some) // (told.itemsize * told.shape[1]) for some in links], dtype=np.intp)
+    told, first = np.frombuffer(b"".join(links), dtype=np.float64).reshape(-1, TELLS - 1), 0
     table = np.empty((len(told), TELLS))
-    table[:, OF], table[:, NUMBER] = np.repeat(np.arange(len(links)), counts), told
+    table[:, NUMBER] = told
+    for unit, some in enumerate(links):
+        last = first + len(some) // (told.itemsize * (TELLS - 1))
+        table[first:last, OF], first = unit, last
     return Units(table_from(rows, ASKED), table)
 
 
 def links_of(found: RivalUpdate) -> list[bytes]:
     """What the links of each unit tell after a tick, see `Rival.links`."""
-    firsts = np.searchsorted(found.links[:, OF], np.arange(len(found.rivals) + 1)).tolist()
+    units = found.links[:, OF].tolist()
+    firsts = [bisect_left(units, unit) for unit in range(len(found.rivals) + 1)]
     return [found.links[first:last, NUMBER].tobytes() for first, last in pairwise(firsts)]
 
 
