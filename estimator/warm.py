@@ -48,7 +48,8 @@ from estimator.smoothing.changes.track_fit import RangedTrack, fit_track
 from estimator.smoothing.images.frame_turns import ToldWay, turn_gains
 from estimator.smoothing.images.heard_powers import HEARD, power_costs
 from estimator.smoothing.keyframes.displacement_sums import Way, ways_of
-from estimator.smoothing.keyframes.ends import Ground, Nodes, Table, faced, place_ends
+from estimator.smoothing.keyframes.ends import Table, faced, place_ends
+from estimator.smoothing.keyframes.ground import Ground, Nodes
 from estimator.smoothing.keyframes.walks import STATES, dead_reckon, inverses, misfit, reckon, unit_motion
 from estimator.smoothing.learning.delay_scores import (
     PROBES,

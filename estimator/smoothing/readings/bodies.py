@@ -16,7 +16,7 @@ from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.measurements.body import ahead_of
 from estimator.smoothing.keyframes.displacement_sums import Ways
-from estimator.smoothing.keyframes.ends import Ground
+from estimator.smoothing.keyframes.ground import Ground
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import HEADING, STATES
 from estimator.smoothing.readings.linearisation import Readings, separations

@@ -15,7 +15,8 @@ from estimator.fusion.readings import echoes
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.measurements.bearing import wrap
-from estimator.smoothing.keyframes.ends import FREE, UNIT, ground_of, place_ends
+from estimator.smoothing.keyframes.ends import FREE, UNIT, place_ends
+from estimator.smoothing.keyframes.ground import ground_of
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.unknowns import Unknowns
 from estimator.smoothing.readings.bodies import ahead_in

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from estimator.fusion.memory.ledger import RSSI
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.smoothing.keyframes.ends import FREE, UNIT, Supports
+from estimator.smoothing.keyframes.ends import FREE, UNIT
+from estimator.smoothing.keyframes.ground import Supports
 
 
 class Selection(NamedTuple):

@@ -11,7 +11,7 @@ from estimator.fusion.learned.noise import single_sigma
 from estimator.fusion.memory.ledger import BEARING, RANGE
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.smoothing.keyframes.ends import Supports
+from estimator.smoothing.keyframes.ground import Supports
 
 DROP = len(physics.NOISES) - 1
 NOISES = np.array(physics.NOISES)

@@ -10,7 +10,8 @@ from estimator.fusion.learned.receivers import LATE_NUMBER
 from estimator.fusion.memory.ledger import BEARING, GYRO_BIAS, RSSI
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.smoothing.keyframes.ends import FREE, UNIT, Ends, Ground, ends_of, selected_ends
+from estimator.smoothing.keyframes.ends import FREE, UNIT
+from estimator.smoothing.keyframes.ground import Ends, Ground, ends_of, selected_ends
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.readings.encounters import candidates
 from estimator.smoothing.readings.linearisation import Readings

@@ -12,7 +12,8 @@ from estimator.fusion.memory.ledger import BODY_BEARING, RANGE, RSSI
 from estimator.graph.dense import Array
 from estimator.measurements import bearing
 from estimator.smoothing.keyframes.displacement_sums import Way
-from estimator.smoothing.keyframes.ends import ends_of, ground_of, place_ends
+from estimator.smoothing.keyframes.ends import place_ends
+from estimator.smoothing.keyframes.ground import ends_of, ground_of
 from estimator.smoothing.keyframes.walks import STATES, Motion, dead_reckon, free_motions, unit_motion
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.readings.rows import Rows
