@@ -116,7 +116,7 @@ class Chain:
             keyframe: not before one asked for earlier.
 
         Raises:
-            ValueError: the matrix is not finite, or far from positive definite.
+            ValueError: the matrix is not finite, or far from positive definite; or the chain was reduced.
         """
         size = self.width + self.lasting
         matrix, vector = np.zeros((size, size)), np.zeros(size)

@@ -114,9 +114,12 @@ class Strand:
             mend: whether what is not positive definite is for rounding to answer for.
 
         Raises:
-            ValueError: the matrix is not finite, or far from positive definite.
+            ValueError: the matrix is not finite, or far from positive definite; or more keyframes have been
+                eliminated already.
         """
-        if until <= self._done or not len(self.group.walks):
+        if until < self._done:
+            raise ValueError(f"keyframes up to {self._done} are eliminated already: assemble the chain anew")
+        if until == self._done or not len(self.group.walks):
             return
         at, mended_at = self._done, -1
         while at < until:

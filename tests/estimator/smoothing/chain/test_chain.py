@@ -23,3 +23,10 @@ def test_of_walks_that_nothing_couples_each_adds_its_own_determinant() -> None:
     chain.reduce()
     own = np.arange(len(whole)).reshape(5, 3, 3)[:, 1].ravel()
     assert chain.log_determinants()[0][1] == pytest.approx(np.linalg.slogdet(whole[np.ix_(own, own)])[1])
+
+
+def test_what_is_eliminated_to_its_end_is_not_taken_for_what_is_left_of_a_keyframe() -> None:
+    chain = random_chain(SHAPES[0])
+    chain.reduce()
+    with pytest.raises(ValueError, match="assemble the chain anew"):
+        chain.remainder(SHAPES[0].length - 1)
