@@ -21,9 +21,9 @@ DIMENSION: dict[VariableKind, int] = {
     "receiver": 4,
 }
 
-BODY = 2
-"""Which number of a radio technology tells what bearers' bodies do; those before it tell how its readings go
-with the distance."""
+BIAS, BODY = 1, 2
+"""Which number of a ranging technology is its bias, and of a radio technology what bearers' bodies do; those
+before the latter tell how its readings go with the distance."""
 
 
 class Variable(NamedTuple):

@@ -17,8 +17,9 @@ from estimator.smoothing.images.alternatives import Mode
 from estimator.smoothing.images.unit_mounting import likeliest_mounting
 from estimator.smoothing.images.unseen_climbs import find_unseen_climb
 from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.learning.delays import CLEARER, ODDS, RARE, delays, distrust, doubted, trust_dropped
+from estimator.smoothing.learning.delays import CLEARER, ODDS, RARE, delays, doubted
 from estimator.smoothing.learning.range_noise import learn_ranging
+from estimator.smoothing.learning.trusted_radios import distrust, trust_dropped
 from estimator.smoothing.learning.unit_noise import learn
 from estimator.smoothing.learning.wrong_steps import withdraw
 from estimator.smoothing.problem.newton import RESTING, Problem

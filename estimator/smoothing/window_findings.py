@@ -21,6 +21,7 @@ from estimator.smoothing.images.heading_images import reports_from, to_other_sid
 from estimator.smoothing.images.heard_radios import heard_by
 from estimator.smoothing.images.image_starts import SAME_RAD
 from estimator.smoothing.images.likeliest_image import JudgedImages
+from estimator.smoothing.learning.trusted_radios import trust_moved
 from estimator.smoothing.learning.unit_noise import learn
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
@@ -65,6 +66,7 @@ def _tell_changes(state: FusionState, problem: Problem, solved: Solution) -> Non
         state.due = True
     for moved in moves:
         branch(state, moved)
+        trust_moved(state, moved.name)
         state.due = True
     decide(state)
 

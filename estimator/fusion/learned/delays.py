@@ -48,3 +48,8 @@ def delays(source: str) -> int:
     """How many radios whose antenna delay is not calibrated take part in each range of a technology."""
     names = source.partition(OF)[2]
     return len(names.split(" ")) if names else 0
+
+
+def delayed_radio(source: str) -> Radio | None:
+    """The radio for whose delay ranges count as a technology of their own; None: none, or several."""
+    return (reported_as(source), source.partition(OF)[2]) if delays(source) == 1 else None

@@ -13,15 +13,14 @@ import math
 import numpy as np
 
 from estimator.fusion import physics
-from estimator.fusion.entering.technologies import technology_states
 from estimator.fusion.learned.calibration import TRUSTED, bias_sigma_m
-from estimator.fusion.learned.delays import Radio, reported_as, source_of
-from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.learned.delays import Radio, reported_as
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.robust import mixture_cost
 from estimator.smoothing.learning.radios import Delay, RangesByRadio, bias_columns, ranges_by_radio
 from estimator.smoothing.learning.suspected_delays import suspicions
+from estimator.smoothing.learning.trusted_radios import distrust
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 
@@ -76,66 +75,6 @@ def doubted(found: list[Delay], least: float = ODDS) -> list[Delay]:
         least: log likelihood ratio from which on one is not.
     """
     return [one for one in found if one.odds > max(least, found[0].odds - ALIKE)]
-
-
-def distrust(state: FusionState, radios: list[Delay]) -> None:
-    """Let the ranges of radios be technologies by themselves, in the ledger and from now on.
-
-    Args:
-        state: the fusion, changed in place.
-        radios: which.
-    """
-    if not radios:
-        return
-    for (technology, name), _, bias_m, *_ in radios:
-        state.delayed[technology, name] = None
-        text = (
-            f"{technology} ranges of {name} are off by {bias_m:+.1f} m: its antenna delay is not calibrated"
-        )
-        state.say("outlier", state.newest_t, name, text)
-    _tell_apart(state)
-    state.due = True
-
-
-def trust_dropped(state: FusionState) -> set[Radio]:
-    """Take back that radios are off which stand where nobody has told: a kick may have seemed a delay.
-
-    Args:
-        state: the fusion, changed in place; nothing has left its window.
-
-    Returns:
-        These radios.
-    """
-    dropped = set[Radio]()
-    for radio in state.delayed:
-        node = state.nodes[radio[1]]
-        if not node.moving and node.role not in ("base", "anchor") and node.absolute.believed_m is None:
-            dropped.add(radio)
-    state.delayed = {radio: None for radio in state.delayed if radio not in dropped}
-    if dropped:
-        _tell_apart(state)
-    return dropped
-
-
-def _tell_apart(state: FusionState) -> None:
-    """Let the ledger's ranges count as what they do by the radios that are not trusted now."""
-    pairs = state.ledger.table("pairs").copy()
-    ranges = np.flatnonzero(pairs[:, 1] == RANGE)
-    for source, a, b in np.unique(pairs[ranges][:, [6, 2, 3]].astype(np.intp), axis=0).tolist():
-        was = state.sources[source]
-        name = source_of(reported_as(was), state.owners[a], state.owners[b], state.delayed)
-        if name == was:
-            continue
-        if was in state.noise:
-            state.noise.setdefault(name, state.noise[was])
-        if was in state.calibrations:
-            state.calibrations.setdefault(name, state.calibrations[was])
-        if was in state.bodies:
-            state.bodies.setdefault(name, state.bodies[was])
-        mine = (pairs[:, 1] == RANGE) & (pairs[:, [6, 2, 3]] == (source, a, b)).all(axis=1)
-        pairs[mine, 6] = state.source(name)
-        technology_states(state, name)
-    state.ledger.replace("pairs", pairs)
 
 
 def delay_odds(problem: Problem, solved: Solution) -> dict[str, float]:

@@ -22,6 +22,7 @@ from estimator.graph.variable import BODY
 from estimator.smoothing.keyframes.walks import STATES, Motion
 from estimator.smoothing.learning.delays import doubt_delays
 from estimator.smoothing.learning.range_noise import learn_ranging
+from estimator.smoothing.learning.trusted_radios import trust_regained
 from estimator.smoothing.learning.wrong_steps import Doubts, doubts_of, find_slips, widen_steps
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
@@ -77,6 +78,7 @@ def learn(
         calibrate(state, problem, solved.x, border)
         if solved.rests:
             doubt_delays(state, problem, solved, other)
+            trust_regained(state, problem, solved.x, border)
             state.due = learn_ranging(state, problem, solved) or state.due
     learn_biases(state, problem, solved.x, found)
     return found

@@ -13,9 +13,10 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.learning.delays import distrust
 from estimator.smoothing.learning.radios import Delay
+from estimator.smoothing.learning.trusted_radios import distrust
 from estimator.smoothing.whole import solve_whole
+from estimator.smoothing.window import solve_now
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import SURE, outside
@@ -149,6 +150,19 @@ def test_looking_back_a_breadcrumb_is_trusted_again_unless_all_says_that_it_is_o
             distrust(state, [Delay(("uwb", "b0"), 0.0, 0.0, True, 0.0)])
         problem, *_ = solve_whole(state)
         assert list(problem.layout.state.delayed) == ([("uwb", "b0")] if delay_m else [])
+
+
+@pytest.mark.parametrize("delay_m", [0.0, 2.0])
+def test_a_radio_is_trusted_again_once_its_own_ranges_say_that_it_is_not_off(
+    delay_m: float,
+) -> None:
+    """A map that was bent has made it seem so; what is off stays distrusted."""
+    for seed in SEEDS:
+        state = fused(dropped(seed, delay_m).readings)
+        distrust(state, [Delay(("uwb", "b0"), 0.0, 0.0, True, 0.0)])
+        for _ in range(3):
+            solve_now(state, state.newest_t)
+        assert (("uwb", "b0") in state.delayed) == (delay_m > 0.0)
 
 
 def test_good_radios_are_trusted() -> None:
