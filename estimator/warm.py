@@ -45,8 +45,6 @@ from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
 from estimator.smoothing.changes.moved_nodes import test_place
 from estimator.smoothing.changes.track_fit import RangedTrack, fit_track
-from estimator.smoothing.images.frame_turns import ToldWay, turn_gains
-from estimator.smoothing.images.heard_powers import HEARD, power_costs
 from estimator.smoothing.keyframes.displacement_sums import Way, ways_of
 from estimator.smoothing.keyframes.ends import Table, faced, place_ends
 from estimator.smoothing.keyframes.ground import Ground, Nodes
@@ -76,6 +74,8 @@ from estimator.smoothing.readings.obstructed import excess
 from estimator.smoothing.readings.stacked import scattered, sigmas
 from estimator.smoothing.readings.thinning import once_a_second
 from estimator.smoothing.readings.window_readings import LedgerRows, window_readings
+from estimator.smoothing.units.frame_turns import ToldWay, turn_gains
+from estimator.smoothing.units.heard_powers import HEARD, power_costs
 
 
 def warm_up() -> None:

@@ -14,8 +14,6 @@ from estimator.smoothing.changes.moved_nodes import MovedNode, moved_nodes
 from estimator.smoothing.changes.relocation import GAIN, USUAL_COST
 from estimator.smoothing.changes.told_places import believe
 from estimator.smoothing.images.alternatives import Mode
-from estimator.smoothing.images.unit_mounting import likeliest_mounting
-from estimator.smoothing.images.unseen_climbs import find_unseen_climb
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.learning.delays import CLEARER, ODDS, RARE, delays, doubted
 from estimator.smoothing.learning.range_noise import learn_ranging
@@ -26,6 +24,8 @@ from estimator.smoothing.problem.newton import RESTING, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.told_causes import ask
+from estimator.smoothing.units.unit_mounting import likeliest_mounting
+from estimator.smoothing.units.unseen_climbs import find_unseen_climb
 from estimator.smoothing.window_extent import spacing_s as usual_s
 
 SLACKS_M = (3.0, 1.0, 0.3, 0.1)

@@ -16,14 +16,14 @@ from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
 from estimator.smoothing.images.alternatives import Mode, alternatives_now
 from estimator.smoothing.images.likeliest_image import JudgedImages, likeliest_image
 from estimator.smoothing.images.solutions import SLACKS_M
-from estimator.smoothing.images.turned_frames import may_have_turned, turned_frames
-from estimator.smoothing.images.unit_mounting import likeliest_mounting
-from estimator.smoothing.images.unseen_climbs import find_unseen_climb, hinted
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.problem.gauge_turn import turned
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
+from estimator.smoothing.units.turned_frames import may_have_turned, turned_frames
+from estimator.smoothing.units.unit_mounting import likeliest_mounting
+from estimator.smoothing.units.unseen_climbs import find_unseen_climb, hinted
 from estimator.smoothing.window_extent import LONGEST_S, STEPS_S, restart, spacing_s, trim
 from estimator.smoothing.window_findings import tell_findings
 

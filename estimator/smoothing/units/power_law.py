@@ -5,7 +5,7 @@ from typing import NamedTuple
 from numba import njit
 
 from estimator.graph.dense import Array, Indices
-from estimator.smoothing.images.heard_powers import MOST, OFF_DB, SINCE_T, VARIANCE, T, cost_of
+from estimator.smoothing.units.heard_powers import MOST, OFF_DB, SINCE_T, VARIANCE, T, cost_of
 
 
 class PowerLaw(NamedTuple):

@@ -11,7 +11,7 @@ from numba import njit
 
 from estimator.graph.dense import Array, Indices
 from estimator.measurements.rssi import ANTENNA_M, DB_PER_NEPER
-from estimator.smoothing.images.heard_powers import (
+from estimator.smoothing.units.heard_powers import (
     EXPONENT,
     OFF_DB,
     RADIO,
@@ -26,7 +26,7 @@ from estimator.smoothing.images.heard_powers import (
     fall_of,
     falls,
 )
-from estimator.smoothing.images.power_law import Foretold, PowerLaw, fit_law, law_before
+from estimator.smoothing.units.power_law import Foretold, PowerLaw, fit_law, law_before
 
 T_OF, EAST_OF, NORTH_OF, PSI, BETA, STRETCH = range(6)
 """Of each moment: epoch (s); where the unit's bearer was: east, north (m); ψ, β and s − 1 there."""

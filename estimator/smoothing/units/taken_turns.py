@@ -12,14 +12,14 @@ from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.robust import mixture_cost
 from estimator.inertial.levelling import ANYWHERE_RAD
-from estimator.smoothing.images.frame_turns import KICKED
 from estimator.smoothing.images.heading_images import drops_along
-from estimator.smoothing.images.mounting_hypotheses import unlearned
-from estimator.smoothing.images.suspected_turns import EPSILON_S, Turn
 from estimator.smoothing.keyframes.layout import Walk
 from estimator.smoothing.keyframes.walks import HEADING
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.units.frame_turns import KICKED
+from estimator.smoothing.units.mounting_hypotheses import unlearned
+from estimator.smoothing.units.suspected_turns import EPSILON_S, Turn
 
 TAKEN, LEAST_RAD = 9.0, 0.5
 """Log likelihood of both solutions from which on a turn is taken: of those that fit best, among all moments

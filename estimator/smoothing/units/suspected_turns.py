@@ -9,8 +9,13 @@ from estimator.fusion import physics
 from estimator.fusion.images import ALWAYS, Alternative, turned_about
 from estimator.fusion.memory.ledger import RSSI
 from estimator.graph.dense import Array, Indices
-from estimator.smoothing.images.frame_turns import EAST_OF, TURNS_RAD, ToldWay, turn_gains
-from estimator.smoothing.images.heard_powers import (
+from estimator.smoothing.keyframes.displacement_sums import Way
+from estimator.smoothing.keyframes.layout import Layout, Walk
+from estimator.smoothing.keyframes.walks import HEADING, SCALE
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.units.frame_turns import EAST_OF, TURNS_RAD, ToldWay, turn_gains
+from estimator.smoothing.units.heard_powers import (
     EAST,
     EXPONENT,
     HEARD,
@@ -24,11 +29,6 @@ from estimator.smoothing.images.heard_powers import (
     VARIANCE,
     T,
 )
-from estimator.smoothing.keyframes.displacement_sums import Way
-from estimator.smoothing.keyframes.layout import Layout, Walk
-from estimator.smoothing.keyframes.walks import HEADING, SCALE
-from estimator.smoothing.problem.newton import Problem
-from estimator.smoothing.problem.solution import Solution
 
 LOOK_S, EVERY_S = 100.0, 8.0
 """How far back turns are looked for, and how far apart."""

@@ -22,11 +22,11 @@ from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.images.alternatives import Mode
 from estimator.smoothing.images.earlier_images import LEAST
-from estimator.smoothing.images.mounting_hypotheses import SLACKS_M, MountingHypothesis, hypotheses
 from estimator.smoothing.keyframes.layout import Layout, Walk
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.units.mounting_hypotheses import SLACKS_M, MountingHypothesis, hypotheses
 
 CLEARER, OPEN = 20.0, 2.0
 """A unit is taken to be worn another way where that is likelier by this much (log odds): a window that was

@@ -15,13 +15,13 @@ from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
-from estimator.smoothing.images.heard_powers import power_costs
-from estimator.smoothing.images.suspected_turns import LOOK_S, suspected_turn
-from estimator.smoothing.images.taken_turns import take_turn
 from estimator.smoothing.keyframes.displacement_sums import Way
 from estimator.smoothing.keyframes.layout import Walk
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.units.heard_powers import power_costs
+from estimator.smoothing.units.suspected_turns import LOOK_S, suspected_turn
+from estimator.smoothing.units.taken_turns import take_turn
 
 HINT, LATELY_S = 4.0, 20.0
 """Powers of so long that cost so much more (log likelihood) than they did hint at a turn."""

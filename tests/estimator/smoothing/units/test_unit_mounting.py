@@ -5,8 +5,8 @@ from msgspec.structs import replace
 from estimator.fusion.entering.unit_mounting import RIGHT
 from estimator.fusion.learned.rival import DOUBTED, Rival
 from estimator.measurements import AnyReading
-from estimator.smoothing.images.unit_mounting import HINTED, MOST, SOME, YOUNG_S, asked_of
 from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.units.unit_mounting import HINTED, MOST, SOME, YOUNG_S, asked_of
 from tests.estimator.smoothing.images.test_flip_ambiguity import solved_of
 from tests.estimator.trackers.test_unit_mounting import entry
 

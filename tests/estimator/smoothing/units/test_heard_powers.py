@@ -3,7 +3,7 @@
 import numpy as np
 
 from estimator.fusion.memory.ledger import RANGE, RSSI
-from estimator.smoothing.images.heard_powers import MOST, power_costs
+from estimator.smoothing.units.heard_powers import MOST, power_costs
 
 
 def test_powers_of_a_walk_are_counted_since_an_epoch_and_cost_no_more_than_an_outlier() -> None:

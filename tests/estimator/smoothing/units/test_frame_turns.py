@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from estimator.graph.dense import Array
-from estimator.smoothing.images.frame_turns import KICKED, TURNS_RAD, ToldWay, turn_gains
-from estimator.smoothing.images.heard_powers import HEARD
+from estimator.smoothing.units.frame_turns import KICKED, TURNS_RAD, ToldWay, turn_gains
+from estimator.smoothing.units.heard_powers import HEARD
 
 ANCHORS_M = np.array([(-15.0, -15.0), (15.0, -15.0), (15.0, 15.0), (-15.0, 15.0)])
 TURNED_S, SECONDS, SIGMA_DB, EXPONENT = 20.0, 60, 6.0, 2.2

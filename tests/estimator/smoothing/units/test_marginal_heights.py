@@ -8,10 +8,10 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.rssi import Rssi
-from estimator.smoothing.images.marginal_heights import UP, marginal_cost
-from estimator.smoothing.images.unseen_climbs import find_unseen_climb
 from estimator.smoothing.problem.newton import RESTING, Problem
 from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.units.marginal_heights import UP, marginal_cost
+from estimator.smoothing.units.unseen_climbs import find_unseen_climb
 from tests.estimator.smoothing.windows import entered, fused, problem_of, unlikelihood
 
 ANCHORS_M = ((1.0, -1.5), (4.0, 3.5), (7.0, -1.5), (9.5, 3.5))

@@ -13,9 +13,9 @@ from estimator.fusion import physics
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.steps import CLIMB_M2_PER_M
 from estimator.graph.dense import Array
-from estimator.smoothing.images.marginal_heights import UP, MarginalCost, marginal_cost
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.units.marginal_heights import UP, MarginalCost, marginal_cost
 
 OFF_PLANE_M = 0.3
 """Far enough for distances to lead on, too little for them to tell."""
