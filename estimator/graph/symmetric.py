@@ -29,7 +29,7 @@ def upper_of(matrix: Array) -> Array:
 
 
 @njit(cache=True)
-def take_in(x: Array, covariance: Array, across: Array, variance: float, off: float) -> None:
+def kalman_update(x: Array, covariance: Array, across: Array, variance: float, off: float) -> None:
     """Take a scalar reading into an estimate, in place: a step of a Kalman filter without temporary arrays.
 
     Args:

@@ -17,7 +17,7 @@ from estimator.fusion import physics
 from estimator.graph.dense import Array
 from estimator.graph.ornstein_uhlenbeck import ornstein_uhlenbeck
 from estimator.graph.robust import FARTHER
-from estimator.graph.symmetric import full, take_in, upper_of
+from estimator.graph.symmetric import full, kalman_update, upper_of
 from estimator.measurements.rssi import ANTENNA_M, DB_PER_NEPER, rssi_slope
 
 SPELL_S = 4.0
@@ -230,7 +230,7 @@ def follow(x: Array, upper: Array, t: float, told: Array, gains: Array) -> tuple
         if known + odd < NOTHING:
             continue
         pulled = off - excess * odd / (known + odd)
-        take_in(x, covariance, across, foretold + 1.0 / (known + odd), pulled)
+        kalman_update(x, covariance, across, foretold + 1.0 / (known + odd), pulled)
     return x, covariance, t
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from estimator.graph.symmetric import full, take_in, upper_of
+from estimator.graph.symmetric import full, kalman_update, upper_of
 
 
 def test_an_upper_triangle_tells_the_whole_matrix() -> None:
@@ -17,7 +17,7 @@ def test_a_reading_tells_what_it_does_in_information_form() -> None:
     half, slope, x, variance, value = chance.normal(size=(4, 4)), chance.normal(size=4), np.zeros(4), 0.3, 1.7
     before = half @ half.T
     covariance, across = before.copy(), before @ slope
-    take_in(x, covariance, across, float(slope @ across + variance), value)
+    kalman_update(x, covariance, across, float(slope @ across + variance), value)
     information = np.linalg.inv(before) + np.outer(slope, slope) / variance
     assert covariance == pytest.approx(np.linalg.inv(information))
     assert np.array_equal(covariance, covariance.T)
