@@ -192,6 +192,18 @@ class LayoutSeen:
         return under
 
     @property
+    def caller_is_clear_of_the_button(self) -> bool:
+        """Whether nothing of who the first alarm is of lies under the button that answers it."""
+        clear: bool = self.page.get_by_test_id("alarm").first.evaluate(
+            """(alarm) => {
+              const {left} = alarm.querySelector('.act').getBoundingClientRect();
+              return [...alarm.querySelectorAll('.who strong')].every(
+                (part) => part.getBoundingClientRect().right <= left);
+            }"""
+        )
+        return clear
+
+    @property
     def help_begins_at_its_head(self) -> bool:
         """Whether the head of the help sheet is seen without scrolling."""
         head = self.page.get_by_role("dialog").get_by_role("heading").bounding_box()
@@ -223,6 +235,13 @@ class LayoutSeen:
         box = self.page.get_by_test_id("map").bounding_box()
         assert box is not None
         return box["height"]
+
+    @property
+    def map_width(self) -> float:
+        """How wide the map is (CSS pixels)."""
+        box = self.page.get_by_test_id("map").bounding_box()
+        assert box is not None
+        return box["width"]
 
     def is_on_the_board(self, node: str) -> bool:
         """Whether the whole line of a responder is seen without turning the board."""

@@ -44,37 +44,6 @@ def test_top_bar_and_timeline_lie_in_one_row_each_also_hours_back_in_a_replay(
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768), (768, 1024)])
-@pytest.mark.parametrize("closed", [False, True], ids=["open", "closed"])
-def test_however_long_the_name_of_an_incident_is_when_it_was_begun_is_read(
-    server: Server, post: Post, commander: Commander, width: int, height: int, closed: bool
-) -> None:
-    incident = post.open_incident("Third alarm, office block Hauptstrasse 12 to 18, north wing and courtyard")
-    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
-    recorded(post, incident, T0)
-    if closed:
-        assert post.http.patch(f"/incidents/{incident}", json={"state": "closed"}).status_code == 200
-    commander.sits_at(width, height)
-    commander.opens(server.url, incident)
-    eventually(lambda: "Nov 21, 2025" in commander.incident_begun)
-    assert commander.incident_begun.startswith("closed") == closed
-    assert not commander.name_and_begin_overlap
-    assert commander.top_bar_height < 60
-
-
-def test_however_short_the_name_of_an_incident_is_when_it_was_begun_is_read_on_a_wide_screen(
-    server: Server, post: Post, commander: Commander
-) -> None:
-    incident = post.open_incident("Fire")
-    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
-    recorded(post, incident, T0)
-    assert post.http.patch(f"/incidents/{incident}", json={"state": "closed"}).status_code == 200
-    commander.sits_at(1920, 1080)
-    commander.opens(server.url, incident)
-    eventually(lambda: "Nov 21, 2025, " in commander.incident_begun)
-    assert not commander.name_and_begin_overlap
-
-
-@pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768), (768, 1024)])
 def test_what_a_mayday_says_leaves_the_map_its_room(
     server: Server, post: Post, commander: Commander, width: int, height: int
 ) -> None:
@@ -181,27 +150,6 @@ def test_the_storeys_of_a_high_tower_hide_nobody_and_those_where_somebody_is_are
     assert commander.storey == "Floor 40"
     commander.asks_for_the_empty_storeys()
     eventually(lambda: commander.storeys == ["All", "Floor 40", *occupied[1:]])
-
-
-def test_however_long_a_name_is_the_status_and_the_age_are_seen(
-    server: Server, post: Post, commander: Commander
-) -> None:
-    incident = post.open_incident()
-    names = ["Hauptlöschgruppenführer Schwarzenberg-Wolkenstein", "x" * 64, "الإطفائي محمد عبد الرحمن"]
-    crew = [
-        responder(T0, f"ff{at}", "A", [4 * at, 2, 0]) | {"callsign": name} for at, name in enumerate(names)
-    ]
-    gone = responder(T0, "gone", "A", [0, 4, 0]) | {"callsign": "Tower 5 E"}
-    heard(post, incident, base(T0), *crew, gone, alarm(T0, "ff0"))
-    heard(post, incident, {"kind": "retire", "t": T0 + 1, "node": "gone"}, step(T0 + 900, "ff0", [0, 0, 0]))
-    commander.sits_at_a_tablet()
-    commander.opens(server.url, incident)
-    eventually(lambda: len(commander.board()) == 4 and commander.board()["Tower 5 E"].age_s > 600)
-    assert (commander.off_the_screen, commander.cut_off()) == ([], [])
-    assert commander.narrowest_name > 75
-    for node in ("ff0", "ff1"):
-        commander.selects(node)
-        commander.closes_the_card()
 
 
 def test_who_asks_why_somebody_is_here_keeps_the_alarms_in_view(

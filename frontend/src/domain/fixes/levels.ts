@@ -1,7 +1,7 @@
 /** Storeys: on which one a node is, which there are, how many responders each holds. */
 import type { Picture } from "../picture";
 import type { FrameNode, Level } from "../types";
-import { levelWords, percent } from "../words";
+import { levelWords, nameInText, percent } from "../words";
 
 /** The storey shown: one, or all of them. */
 export type LevelChoice = number | "all";
@@ -31,7 +31,15 @@ export function storeyUnsure(node: FrameNode): boolean {
 
 /** The node's storey as it is said: "First floor", and "First floor, 64 %" where it is not sure. */
 export function storeyWords(node: FrameNode, levels: readonly Level[]): string {
-  const words = levelWords(levelOf(node, levels), levels);
+  return withProbability(levelWords(levelOf(node, levels), levels), node);
+}
+
+/** The same beside a mark: a long name gives way in its middle, not the probability behind it. */
+export function storeyBesideMark(node: FrameNode, levels: readonly Level[]): string {
+  return withProbability(nameInText(levelWords(levelOf(node, levels), levels)), node);
+}
+
+function withProbability(words: string, node: FrameNode): string {
   return node.level_p != null && storeyUnsure(node) ? `${words}, ${percent(node.level_p)}` : words;
 }
 

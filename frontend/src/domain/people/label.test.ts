@@ -25,6 +25,13 @@ test("where there is no room it says who and how old, and a storey only if that 
   expect(labelWords(upstairs, ALL).brief).toBe("E7-1 · 3 s");
 });
 
+test("a storey with a long name gives way in its middle, and its probability is said whole", () => {
+  const levels = [{ level: 1, name: "Ground floor and mezzanine, east", up_m: 3 }];
+  expect(labelWords(aNode({ level: 1, level_p: 0.64 }), { ...ALL, levels }).whole[1]).toBe(
+    "3 s · Ground flo…nine, east, 64 %",
+  );
+});
+
 test("on a phone's map it says that the storey is not sure, for which one there is no room", () => {
   const narrow = { ...ALL, narrow: true };
   expect(labelWords(aNode({ level: 1, level_p: 0.64 }), narrow).short).toBe("E7-1 · 3 s · storey?");

@@ -1,6 +1,6 @@
 /** What stands beside a responder on the map: who, in which alarm, how old the fix, where it is not plain. */
 
-import { type LevelChoice, levelOf, storeyUnsure, storeyWords } from "../fixes/levels";
+import { type LevelChoice, levelOf, storeyBesideMark, storeyUnsure } from "../fixes/levels";
 import { ageS, type StalenessLimits, statusAt } from "../fixes/staleness";
 import type { FrameAlarm, FrameNode, Level } from "../types";
 import { alarmWord, nameInText, nameOf, roughly, shortAge, statusWord } from "../words";
@@ -42,7 +42,7 @@ export function labelWords(
   const heard = status === "live" ? age : `${statusWord(status).toUpperCase()} ${age}`;
   const old = error_m === null ? heard : `${heard} · ± ${roughly(error_m)}`;
   const said = saysStorey(node, level, levels);
-  const storey = ` · ${storeyWords(node, levels)}`;
+  const storey = ` · ${storeyBesideMark(node, levels)}`;
   const line = `${name} · ${old}`;
   const unsure = said && storeyUnsure(node);
   const brief = unsure ? `${line} · storey?` : line;
