@@ -9,6 +9,7 @@ import structlog
 
 from backend.demo.batching import batches_of, body_of, gateways_of
 from backend.demo.client import Client, IncidentGone, Refused
+from backend.demo.pace import Pace
 from backend.errors import CommandRefused
 from estimator.simulate import Scenario, scenario, scenario_names
 
@@ -121,21 +122,21 @@ async def _play_once(client: Client, played: Scenario, speed: float) -> None:
 
 async def _post_all(client: Client, incident: str, played: Scenario, speed: float) -> None:
     """All gateways side by side, until they are done or the incident is taken away."""
-    pace = (time.time(), asyncio.get_running_loop().time(), speed)
+    names = gateways_of(played.reports)
+    start, pace = time.time(), Pace(speed, names)
     try:
         async with asyncio.TaskGroup() as gateways:
-            for gateway in gateways_of(played.reports):
-                gateways.create_task(_play_gateway(client, incident, played, gateway, pace))
+            for gateway in names:
+                gateways.create_task(_play_gateway(client, incident, played, gateway, start, pace))
     except* IncidentGone as gone:
         log.info("incident taken away", incident=incident, why=str(gone.exceptions[0]))
 
 
 async def _play_gateway(
-    client: Client, incident: str, played: Scenario, gateway: str, pace: tuple[float, float, float]
+    client: Client, incident: str, played: Scenario, gateway: str, start: float, pace: Pace
 ) -> None:
     """What one gateway posts, each batch when it is due; what a lost link holds up follows in order."""
-    start, began, speed = pace
-    loop = asyncio.get_running_loop()
     for number, batch in enumerate(batches_of(played.reports, gateway)):
-        await asyncio.sleep(began + batch.due_s / speed - loop.time())
+        await pace.wait(gateway, batch.due_s)
         await client.post(incident, body_of(batch, gateway, f"{gateway}-{number:06d}", start))
+    await pace.done(gateway)
