@@ -66,7 +66,10 @@ def test_a_link_to_an_incident_that_does_not_exist_says_so_and_shows_no_other_on
     two_incidents(post)
     commander.page.goto(f"{server.url}/#incident=nowhere")
     eventually(lambda: "nowhere" in commander.trouble)
+    assert "choose one" in commander.trouble
+    assert "/api/" not in commander.trouble
     assert commander.incident == "Choose an incident"
+    assert "No incident chosen" in commander.board_words
     commander.chooses_incident("the older")
     commander.sees("FF1", "Was live")
     eventually(lambda: commander.trouble == "")

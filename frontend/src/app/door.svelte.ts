@@ -73,7 +73,9 @@ export class Door {
     } catch (cause) {
       if (wish !== this.wishes) return;
       this.deadLink = cause instanceof api.RequestFailed && cause.status === 404;
-      this.fail(cause);
+      if (this.deadLink)
+        this.trouble = `This link's incident (${link.incident}) is not on this server: choose one above.`;
+      else this.fail(cause);
     }
   }
 
