@@ -9,6 +9,7 @@ Problem              500    anything that is answered as `application/problem+js
 ├── TooLarge         413    more readings or bytes than a batch may have
 ├── WrongMediaType   415    content type or encoding that is not taken
 ├── Invalid          422    a field or parameter outside its bounds
+├── NeedsSocket      426    a socket is asked for as a page
 ├── TooBusy          429    the log cannot keep up; come back after `retry_after_s`
 ├── Unavailable      503    the log cannot be written, or the estimator is away
 └── TooSlow          504    what was waited for did not come in time
@@ -159,6 +160,16 @@ class Invalid(Problem):
             for fault in faults
         ]
         return cls("; ".join(f"{error.field}: {error.message}" for error in errors), errors)
+
+
+class NeedsSocket(Problem):
+    """A socket is asked for as a page."""
+
+    status, slug, title = 426, "needs-websocket", "This is a WebSocket, not a page"
+
+    def headers(self) -> dict[str, str]:
+        """The headers that go with it."""
+        return super().headers() | {"upgrade": "websocket"}
 
 
 class TooBusy(Problem):

@@ -7,7 +7,7 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError, WebSocketRequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
-from starlette.routing import compile_path
+from starlette.routing import Match, Mount, compile_path
 from starlette.websockets import WebSocket
 
 from backend.errors import (
@@ -15,6 +15,7 @@ from backend.errors import (
     Conflict,
     FieldError,
     Invalid,
+    NeedsSocket,
     NotAllowed,
     NotAuthenticated,
     NotFound,
@@ -28,6 +29,7 @@ from backend.errors import (
 )
 
 API = "/api/"
+NO_SOCKET = "open it as a WebSocket, ws:// or wss://; a proxy on the way has to hand on its upgrade"
 NO_JSON = "the body is no JSON; send one JSON object in UTF-8"
 
 log = structlog.get_logger()
@@ -68,6 +70,8 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(HTTPException)
     async def by_status(request: Request, error: HTTPException) -> Response:
+        if is_socket(request):
+            return answer(NeedsSocket(f"{request.url.path}: {NO_SOCKET}"))
         kind = BY_STATUS.get(error.status_code, Problem)
         methods = methods_of(request)
         # The screen's files lie under every path: what no route of the API takes ends there, as not found, or
@@ -79,6 +83,10 @@ def install(app: FastAPI) -> None:
                 kind = NotFound
             methods = {"GET", "HEAD"}
         detail = f"{request.method} {request.url.path}: {kind.title.lower()}"
+        if kind is NotAllowed:
+            detail += f"; it takes {', '.join(sorted(methods))}"
+        if kind is NotFound:
+            detail += "; /docs lists what there is"
         response = answer(kind(NO_JSON if kind is NotUnderstood else detail))
         if kind.status == error.status_code:
             response.headers.update(error.headers or {})
@@ -100,6 +108,13 @@ def methods_of(request: Request) -> set[str]:
         if compile_path(path)[0].match(request.url.path)
         for method in operations
     }
+
+
+def is_socket(request: Request) -> bool:
+    """Whether a path is that of a socket. The screen, which is mounted, answers under every path."""
+    scope = {**request.scope, "type": "websocket"}
+    routes = (route for route in request.app.routes if not isinstance(route, Mount))
+    return any(route.matches(scope)[0] is Match.FULL for route in routes)
 
 
 def answer(problem: Problem) -> Response:

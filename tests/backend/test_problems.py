@@ -36,6 +36,7 @@ def test_where_the_api_has_no_page_none_is_found_by_any_method(
 ) -> None:
     answer = httpx2.request(method, f"{server.url}/api/v1/{path}")
     assert (answer.status_code, answer.json()["title"]) == (404, "There is nothing under that name")
+    assert "/docs" in answer.json()["detail"]
     assert "allow" not in answer.headers
 
 
@@ -45,3 +46,15 @@ def test_where_the_api_has_no_page_none_is_found_by_any_method(
 def test_a_page_says_which_methods_it_takes(server: Server, path: str, allowed: str) -> None:
     answer = httpx2.delete(f"{server.url}/{path}")
     assert (answer.status_code, answer.headers["allow"]) == (405, allowed)
+    assert f"it takes {allowed}" in answer.json()["detail"]
+
+
+@pytest.mark.parametrize("method", ["GET", "POST"])
+@pytest.mark.parametrize("socket", ["live", "replay"])
+def test_who_asks_for_a_socket_as_for_a_page_hears_how_to_open_it(
+    server: Server, method: str, socket: str
+) -> None:
+    answer = httpx2.request(method, f"{server.url}/api/v1/incidents/x/{socket}")
+    assert (answer.status_code, answer.headers["upgrade"]) == (426, "websocket")
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert "a proxy on the way" in answer.json()["detail"]
