@@ -16,6 +16,8 @@ from estimator.graph.dense import Array, Indices
 
 NOWHERE_M = 1e-6
 """From so near a line of sight has no direction."""
+SMALL_RAD2 = 1e-7
+"""Of a smaller variance rounding leaves nothing of 1 − cos, or something negative."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -47,12 +49,13 @@ def sight_turns(
 def arc_error(variance: Array) -> Array:
     """E (1 − cos ψ)² with ψ ~ N(0, v): by what share of its lever an arc is off its tangent, squared.
 
-    3/2 − 2 exp(−v/2) + exp(−2v) / 2.
+    3/2 − 2 exp(−v/2) + exp(−2v) / 2; of small variances it is 3/4 v².
 
     Args:
         variance: v, … (rad²).
     """
-    return 1.5 - 2.0 * np.exp(-0.5 * variance) + 0.5 * np.exp(-2.0 * variance)
+    whole = 1.5 - 2.0 * np.exp(-0.5 * variance) + 0.5 * np.exp(-2.0 * variance)
+    return np.where(variance < SMALL_RAD2, 0.75 * variance**2, whole)
 
 
 @njit(cache=True, error_model="numpy")

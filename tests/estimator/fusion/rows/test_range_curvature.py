@@ -5,9 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from estimator.fusion.memory.ledger import RANGE
-from estimator.fusion.rows.range_curvature import ranges_alike, sight_turns
+from estimator.fusion.rows.range_curvature import arc_error, ranges_alike, sight_turns
 from estimator.fusion.rows.rows import A_E, B_E, EXTRA, FIELDS, KIND, VALUE, A, B, columns_of, linearise
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
@@ -143,6 +145,15 @@ def test_a_line_of_sight_turns_with_what_is_aside_of_it() -> None:
     sight_turns(table, columns, jacobian, residual, aside, levers_m)
     assert levers_m == pytest.approx([10.0], rel=1e-3)
     assert np.abs(aside[0, :3]) == pytest.approx([0.0, 0.1, 0.0], rel=1e-3)
+
+
+@given(st.floats(-12.0, 2.0).map(lambda decades: 10.0**decades))
+def test_an_arc_is_off_its_tangent_by_something_however_little_it_turns(variance: float) -> None:
+    """Of the mean cosine 1 − q, E (1 − cos)² is q² (3 − 2 q + q² / 2)."""
+    q = -np.expm1(-0.5 * variance)
+    found = float(arc_error(np.array([variance]))[0])
+    assert found > 0.0
+    assert found == pytest.approx(q**2 * (3.0 - 2.0 * q + 0.5 * q**2), rel=1e-6, abs=1e-15)
 
 
 def test_ranges_between_the_same_two_ends_share_their_line_whoever_measured() -> None:
