@@ -135,6 +135,14 @@ def estimates(state: FusionState, covariance: Array) -> list[NodeEstimate]:
     return [_estimate(state, node, covariance, found.get(node.node)) for node in state.nodes.values()]
 
 
+def estimate_of(state: FusionState, name: str) -> NodeEstimate | None:
+    """What is shown of one node now; None: nobody knows of it."""
+    if name not in state.nodes:
+        return None
+    found = estimates(state, covariance_of(state))
+    return next(estimate for estimate in found if estimate.node == name)
+
+
 @njit(cache=True)
 def shown(starts: Indices, x: Array, covariance: Array) -> Array:
     """Places and their covariances, m × 9: e, n, u (m); ee, en, eu, nn, nu, uu (m²).

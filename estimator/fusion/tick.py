@@ -22,6 +22,7 @@ from estimator.fusion.readings.copies import without_copies
 from estimator.fusion.readings.crossings import hear
 from estimator.fusion.readings.displacements import move_units, returns
 from estimator.fusion.readings.unstated_starts import with_starts
+from estimator.fusion.report import estimate_of
 from estimator.fusion.rows.rows import Single
 from estimator.inertial.samples import AnyFolded, Samples
 from estimator.measurements.displacement import Displacement
@@ -83,7 +84,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         state.suspected = state.suspected or was_silent(state.nodes[name])
     _fold(state, displacements, holds, late_t, gone_out)
     for gone in retired:
-        leaving.retire(state, gone)
+        leaving.retire(state, gone, estimate_of(state, gone.node))
     for reading in returned:
         corrections.take(state, reading)
     state.keep_poses()

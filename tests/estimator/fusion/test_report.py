@@ -12,7 +12,8 @@ from estimator.fusion.learned.delays import Suspicion
 from estimator.fusion.learned.told_places import MistoldPlace
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.report import covariance_of, estimates, relative
+from estimator.fusion.report import covariance_of, estimate_of, estimates, relative
+from estimator.fusion.tick import fold_tick
 from estimator.graph.dense import Array
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.variable import Variable
@@ -136,11 +137,25 @@ def test_who_is_retired_or_shown_from_a_sure_place_is_as_unsure_as_before() -> N
     covariance = covariance_of(state)
     before = estimates(state, covariance)[0].covariance_m2
     from_base = relative(state, covariance, "base", "ff1")
-    retire(state, Retire(t=21.0, node="ff1"))
+    retire(state, Retire(t=21.0, node="ff1"), estimate_of(state, "ff1"))
     after = estimates(state, covariance_of(state))[0].covariance_m2
     assert from_base is not None
     assert from_base.covariance_m2 == pytest.approx(before)
     assert after == pytest.approx(before)
+
+
+def test_who_is_retired_is_as_unsure_as_a_doubted_scale_had_made_him() -> None:
+    matrix, x, covariance = solved(0, NARROW)
+    state = FusionState()
+    state.graph = Kirchhoff.of([PLACE, SCALE], matrix, matrix @ x * 0.0, x)
+    state.nodes["ff1"] = NodeState(node="ff1", role="beacon", t=0.0, mode="static")
+    state.calibrations["uwb"] = Calibration(0.24, NARROW, NARROW)
+    before = matrix_of(estimates(state, covariance_of(state))[0].covariance_m2)
+    assert np.trace(before) > 1.1 * np.trace(covariance[:3, :3])
+    fold_tick(state, 1.0, [Retire(t=0.5, node="ff1")])
+    assert state.nodes["ff1"].mode == "retired"
+    after = estimates(state, covariance_of(state))[0].covariance_m2
+    assert matrix_of(after) == pytest.approx(before)
 
 
 def test_who_knows_his_heading_is_shown_as_the_matrix_has_him() -> None:

@@ -7,6 +7,7 @@ from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, place
 from estimator.fusion.entering.leaving import retire
 from estimator.fusion.memory.ledger import ECHO
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.report import estimate_of
 from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
@@ -89,7 +90,7 @@ def test_who_has_been_retired_or_moves_by_itself_since_is_asked_no_more() -> Non
     state = walked()
     branch(state, MovedNode("b1", TURNED_S, 25))
     numbers = numbers_of(state)
-    retire(state, Retire(t=61.0, node="b1"))
+    retire(state, Retire(t=61.0, node="b1"), estimate_of(state, "b1"))
     assert not reunite(state)
     assert numbers_of(state) == numbers
     state = walked()
