@@ -117,7 +117,7 @@ def set_clocks(state: FusionState, hearing: RecentRanges, solved_t: float) -> se
     """
     found: set[int] = set()
     due = [search for search in (ANOTHER_CLOCK, ROUNDED) if search.due(hearing.until_t, solved_t)]
-    if not due:
+    if not due or not hearing.enough:
         return found
     for i, walk in enumerate(hearing.problem.layout.walks):
         node = state.life(walk.number)

@@ -29,6 +29,8 @@ def tell_duplicate_names(state: FusionState, hearing: RecentRanges) -> None:
         state: the fusion: takes the notices.
         hearing: of a window.
     """
+    if not hearing.enough:
+        return
     layout, x = hearing.problem.layout, hearing.solved.x
     for i, walk in enumerate(layout.walks):
         node = state.life(walk.number)

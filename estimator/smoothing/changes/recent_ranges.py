@@ -66,6 +66,11 @@ class RecentRanges:
         stands = np.column_stack(rows.standing)[ranges]
         return ranges, rows.t[ranges], rows.pairs[ranges, 2:4].astype(np.intp), stands
 
+    @cached_property
+    def enough(self) -> bool:
+        """Whether there are as many as tell anything of any walk."""
+        return int(np.count_nonzero(self.problem.rows.pairs[:, 1] == RANGE)) >= RANGES
+
     def ill(self, index: int, node: NodeState) -> bool:
         """Whether the ranges of a walk's radio and the steps of its unit seem to disagree.
 

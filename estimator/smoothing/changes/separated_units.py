@@ -52,9 +52,11 @@ def find_separated_units(state: FusionState, hearing: RecentRanges, clocked: Col
             if max(since_t, known.marks[0][0]) < known.since_t + 0.5 * SPAN_S:
                 continue
             heard = hearing.heard(i, since_t, until_t, known.led)
-        else:
+        elif hearing.enough and hearing.ill(i, node):
             since_t = max(since_t, hearing.led_since(i))
-            heard = hearing.heard(i, since_t, until_t) if hearing.ill(i, node) else None
+            heard = hearing.heard(i, since_t, until_t)
+        else:
+            continue
         if heard is None:
             continue
         unit, free = _both(heard, states, times, node.apart is None)

@@ -27,6 +27,8 @@ def fix_speeds(singles: Array, late: Integers, poses: Array) -> Array:
         poses: rows of the ledger, where everybody was thought to be.
     """
     found, asked = np.zeros(len(singles)), late >= 0
+    if not asked.any():
+        return found
     for number in np.unique(singles[asked, 1]).astype(np.int64).tolist():
         mine = np.flatnonzero(asked & (singles[:, 1] == number))
         known = own_rows(poses, number)
