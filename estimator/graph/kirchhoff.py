@@ -274,14 +274,14 @@ def marginalised(matrix: Array, vector: Array, gone: Indices, kept: Indices) -> 
         kept: rows to be kept, in the order in which they are wanted.
     """
     if len(gone) == 0:
-        left = matrix[np.ix_(kept, kept)]
+        left = matrix[kept[:, None], kept]
         return 0.5 * (left + left.T), vector[kept]
-    coupling = matrix[np.ix_(gone, kept)]
-    block = matrix[np.ix_(gone, gone)]
+    coupling = matrix[gone[:, None], kept]
+    block = matrix[gone[:, None], gone]
     try:
         cholesky = factorise(block)
     except ValueError:
         cholesky = factorise(mended(block))
     through = solve(cholesky, np.column_stack([coupling, vector[gone]]))
-    left = matrix[np.ix_(kept, kept)] - coupling.T @ through[:, :-1]
+    left = matrix[kept[:, None], kept] - coupling.T @ through[:, :-1]
     return 0.5 * (left + left.T), vector[kept] - coupling.T @ through[:, -1]

@@ -235,7 +235,7 @@ class Chain:
         found = np.zeros((self._length, walks, size, size))
         ahead = np.zeros((max(self._length - 1, 0), walks, size, size))
         groups = [strand.group for strand in self.strands]
-        corners = [border[np.ix_(group.lasting, group.lasting)] for group in groups]
+        corners = [border[group.lasting[:, None], group.lasting] for group in groups]
         own = self.each(Strand.covariances, corners)
         for group, (of_each, with_next) in zip(groups, own, strict=True):
             if len(group.walks):

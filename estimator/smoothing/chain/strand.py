@@ -5,6 +5,7 @@ Kirchhoff matrix of its part of the border. Cost grows with the length of the ch
 """
 
 from collections.abc import Sequence
+from itertools import accumulate
 from math import prod
 from typing import NamedTuple
 
@@ -187,13 +188,14 @@ def strands_of(length: int, groups: Sequence[Group]) -> list[Strand]:
         groups: one for each strand.
     """
     shapes = [_shapes(length, group) for group in groups]
-    memory = np.zeros(sum(prod(shape) for own in shapes for shape in own))
-    strands, at = [], 0
+    ends = list(accumulate(prod(shape) for own in shapes for shape in own))
+    memory, strands, at, each = np.zeros(ends[-1]), list[Strand](), 0, iter(ends)
     for group, own in zip(groups, shapes, strict=True):
         blocks = []
         for shape in own:
-            blocks.append(memory[at : at + prod(shape)].reshape(shape))
-            at += prod(shape)
+            end = next(each)
+            blocks.append(memory[at:end].reshape(shape))
+            at = end
         strands.append(Strand(group, blocks))
     return strands
 

@@ -116,7 +116,7 @@ def _is_open(problem: Problem) -> bool:
     Then a turn would be taken, and another one, where it is a unit that is worn the wrong way round.
     """
     known = () if problem.prior is None else problem.prior.keys
-    droppers = np.unique(problem.layout.state.ledger.table("drops")[:, 2]).astype(int).tolist()
+    droppers = set(problem.layout.state.ledger.table("drops")[:, 2].tolist())
     return any(("walk", w.number) not in known and w.number in droppers for w in problem.layout.walks)
 
 
