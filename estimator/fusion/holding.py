@@ -58,6 +58,9 @@ def covered(
     """
     units = _told_until(state)
     soonest = min(units.values(), default=math.inf)
+    if not readings or readings[-1].t <= soonest:
+        state.waiting = ()
+        return list(readings)
     told = max(bisect_right(readings, soonest, key=EPOCH), bisect_left(readings, late_t, key=EPOCH))
     ready = list(readings[:told])
     waiting: list[AnyHeld] = []

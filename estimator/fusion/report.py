@@ -44,8 +44,9 @@ def covariance_of(state: FusionState) -> Array:
     judged = [(Variable("range", name), 0, known) for name, known in state.calibrations.items()]
     judged += [(technology_variable(name), BODY, known) for name, known in state.bodies.items()]
     for variable, number, known in judged:
-        if variable in graph.starts:
-            row = graph.starts[variable] + number
+        start = graph.starts.get(variable)
+        if start is not None:
+            row = start + number
             variance = float(found[row, row])
             factor = doubt(known, float(graph.reference[row]), variance)
             if factor * variance > NOTHING:

@@ -44,6 +44,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     state.newest_t = max(state.newest_t, until_t)
     displacements: list[Displacement] = []
     holds: list[AnyHeld] = list(state.waiting)
+    powers: list[Rssi] = []
     retired, returned = list[Retire](), list[Node]()
     readings = without_copies(state, readings)
     for reading in readings:
@@ -51,6 +52,8 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
             for name in names_of(reading):
                 reentry.re_enter(state, name, reading.t)
         if isinstance(reading, HELD):
+            if isinstance(reading, Rssi):
+                powers.append(reading)
             holds.append(retimed(reading, state.clocks, state.nodes) if state.clocks else reading)
         elif isinstance(reading, Displacement):
             displacements.append(reading)
@@ -62,7 +65,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
             retired.append(reading)
         elif isinstance(reading, Samples):
             displacements += raw_samples.displacements_of(state, reading)
-    holds += hear(state, [r for r in readings if isinstance(r, Rssi)])
+    holds += hear(state, powers)
     displacements = separated_unit.set_aside(state, with_starts(state, displacements))
     holds.sort(key=EPOCH)
     late_t, gone_out = until_t - physics.PENDING_S, {r.node for r in retired}

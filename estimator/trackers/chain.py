@@ -114,11 +114,12 @@ def found_m(before: FusionState, after: FusionState) -> float:
         was = before.nodes.get(name)
         if was is None or was.mode != "unit":
             continue
-        off_m = float(np.hypot(*(after.place(node) - before.place(was))[:2])) - (node.way_m - was.way_m)
+        at, now = before.graph.starts[was.position], after.graph.starts[node.position]
+        east, north = after.graph.reference[now : now + 2] - before.graph.reference[at : at + 2]
+        off_m = float(np.hypot(east, north)) - (node.way_m - was.way_m)
         if off_m > max(JOLT_M, farthest_m):
-            at = before.graph.starts[was.position]
-            if np.trace(before.graph.covariance()[at : at + 2, at : at + 2]) > JOLT_M**2:
-                farthest_m = off_m
+            unsure_m2 = np.trace(before.graph.covariance()[at : at + 2, at : at + 2])
+            farthest_m = off_m if unsure_m2 > JOLT_M**2 else farthest_m
     return farthest_m
 
 

@@ -1,5 +1,7 @@
 """The blocks of technologies in the Kirchhoff matrix: scale and bias of ranges, path loss, bodies."""
 
+from functools import lru_cache
+
 from estimator.fusion import physics
 from estimator.fusion.learned import reach
 from estimator.fusion.learned.calibration import bias_sigma_m
@@ -44,8 +46,9 @@ def technology_variable(technology: str) -> Variable:
     return path_loss_variable(technology) if powers else Variable("range", technology)
 
 
+@lru_cache(maxsize=256)
 def path_loss_variable(technology: str) -> Variable:
-    """The key of the block of a technology of signals."""
+    """The key of the block of a technology of signals: each tick asks for it several times."""
     return Variable("rssi", technology[len(UNTOLD_POWER) :])
 
 

@@ -204,9 +204,13 @@ class FusionState:
 
     def base_place(self) -> Vector3:
         """Where the base stands, or stood if all are retired: the origin, unless it says otherwise."""
-        bases = [n for n in self.nodes.values() if n.role == "base" and n.place_m is not None]
-        base = min(bases, key=lambda n: n.mode == "retired", default=None)
-        return (0.0, 0.0, 0.0) if base is None or base.place_m is None else base.place_m
+        left: Vector3 | None = None
+        for node in self.nodes.values():
+            if node.role == "base" and node.place_m is not None:
+                if node.mode != "retired":
+                    return node.place_m
+                left = left or node.place_m
+        return left or (0.0, 0.0, 0.0)
 
     def bias_sigma_radps(self, node: NodeState) -> float:
         """Standard deviation of the prior of the gyro bias of a node's unit (rad/s).

@@ -74,33 +74,21 @@ def end_of(state: FusionState, node: NodeState, marks: list[Mark]) -> TrailEnd:
     """
     mode, starts = node.mode, state.graph.starts
     start = states = -1
-    moves, first, place = STANDS, len(marks), NOWHERE
-    if mode == "fixed" and node.place_m is not None:
-        place = node.place_m
-    elif mode == "static":
+    moves, first, (e, n, u), (faced_e, faced_n) = STANDS, len(marks), NOWHERE, NOBODY_FACES
+    if mode == "static":
         start = starts[node.position]
+    elif mode == "fixed" and node.place_m is not None:
+        e, n, u = node.place_m
     elif mode == "unit":
-        start, states = starts[node.position], starts[node.unit]
+        start, states, (faced_e, faced_n) = starts[node.position], starts[node.unit], node.faced
         if len(node.trail) > 1:
             moves = WALKS
             marks.extend(node.trail)
     elif mode == "free":
         start, states, moves = starts[node.position], starts[node.velocity], DRIFTS
-    return TrailEnd(
-        start,
-        moves,
-        states,
-        node.pose_t,
-        *place,
-        first,
-        len(marks) - 1,
-        node.index,
-        node.way_m,
-        start >= 0 or mode == "fixed",
-        node.role in physics.OUTSIDE_ROLES,
-        node.turned,
-        *(node.faced if mode == "unit" else NOBODY_FACES),
-    )
+    last, decided, outside = len(marks) - 1, start >= 0 or mode == "fixed", node.role in physics.OUTSIDE_ROLES
+    told = node.pose_t, e, n, u, first, last, node.index, node.way_m, decided, outside, node.turned
+    return TrailEnd(start, moves, states, *told, faced_e, faced_n)
 
 
 def offset_of(state: FusionState, node: NodeState, t: float) -> Vector3:

@@ -18,7 +18,7 @@ from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import SILENT_S
-from estimator.fusion.rows.rival_kernels import ASKED_T, NONE, RivalUpdate, Units, links_of, units_from
+from estimator.fusion.rows.rival_kernels import NONE, RivalUpdate, Units, links_of, units_from
 from estimator.fusion.rows.rows import KIND
 from estimator.graph.dense import Array
 
@@ -33,14 +33,16 @@ class QuestionedUnits(NamedTuple):
 
     Attributes:
         nodes: all who have a unit.
+        epochs: that the position of each refers to (s); NaN: he is not asked about.
         told: the same as numbers.
     """
 
     nodes: list[NodeState]
+    epochs: list[float]
     told: Units
 
 
-NOBODY = QuestionedUnits([], units_from([], []))
+NOBODY = QuestionedUnits([], [], units_from([], []))
 
 
 def ask(state: FusionState, table: Array) -> QuestionedUnits:
@@ -69,7 +71,7 @@ def ask(state: FusionState, table: Array) -> QuestionedUnits:
         known = (rival.t, *rival.state, *rival.covariance, rival.odds, rival.ranged_t)
         rows.append((start, t, by_powers, *known))
     links = [b"" if node.rival is None else node.rival.links for node in nodes]
-    return QuestionedUnits(nodes, units_from(rows, links))
+    return QuestionedUnits(nodes, asked_t, units_from(rows, links))
 
 
 def answer(state: FusionState, asked: QuestionedUnits, found: RivalUpdate) -> None:
@@ -82,9 +84,7 @@ def answer(state: FusionState, asked: QuestionedUnits, found: RivalUpdate) -> No
     """
     if not found.heard:
         return
-    for node, asked_t, rival in zip(
-        asked.nodes, asked.told.rows[:, ASKED_T].tolist(), _rivals(found), strict=True
-    ):
+    for node, asked_t, rival in zip(asked.nodes, asked.epochs, _rivals(found), strict=True):
         if math.isnan(asked_t) and node.rival is not None:
             state.nodes[node.node] = replace(node, rival=None)
         if rival is None:
