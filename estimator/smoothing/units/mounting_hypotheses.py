@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from estimator.fusion.entering.unit_mounting import RIGHT, Mounting, mount, mounting_of
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
+from estimator.measurements.bearing import within_pi
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 
@@ -60,7 +61,7 @@ def hypotheses(
     tried: list[dict[int, Mounting]] = [{}, *({number: RIGHT} for number in wrong)]
     for number in numbers:
         for way in WRONG:
-            if mounting_of(state.life(number)) == way:
+            if mounting_of(state.life(number)) == way or rather_faces(state, number, way):
                 continue
             tried.append({number: way})
             tried += [{other: RIGHT, number: way} for other in wrong if other != number]
@@ -115,6 +116,22 @@ def _rested(problem: Problem, x: Array, resting: float) -> Solution | None:
         return problem.solve(x, iterations=ITERATIONS, resting=resting)
     except ValueError:
         return None
+
+
+def rather_faces(state: FusionState, number: int, way: Mounting) -> bool:
+    """Whether a unit that seems to be worn turned rather faces another way than was told.
+
+    What it faces and how it is turned on its boot are one angle. Where nobody has told what it faces, another
+    heading explains all that a turn does, and is not as rare: those are asked about as images of its way.
+
+    Args:
+        state: the fusion.
+        number: of the node.
+        way: how the unit may be worn.
+    """
+    begins = state.ledger.table("begins")
+    sigma_rad = float(begins[(begins[:, 1] == number) & (begins[:, 2] == 1.0)][-1, 11])
+    return not way.mirrored and 0.5 * (within_pi(way.turned_rad) / sigma_rad) ** 2 < -RARE
 
 
 def unlearned(state: FusionState) -> FusionState:
