@@ -64,7 +64,6 @@ def solve_whole(state: FusionState) -> tuple[Problem, Solution, list[Mode]]:
     problem, solved = _solved(state)
     for _ in range(DELAYS):
         judged = problem.solve(solved.x, iterations=0)
-        judged.chain.reduce()
         other = ask(problem, judged).odds
         asked, rival = delays(problem, judged), other + CLEARER - RARE
         found = doubted([one for one in asked if one.radio in again], max(ODDS, rival))
@@ -197,8 +196,7 @@ def _layout(state: FusionState) -> Layout:
 def _branch_moved(problem: Problem, solved: Solution, moves: Sequence[MovedNode]) -> None:
     """Branch moved nodes: each begins at its new place, all others as they are in the solution."""
     layout, state = problem.layout, problem.layout.state
-    # Who asked which places were told wrongly has eliminated the solution's own equations to their end.
-    hand_back(state, layout, solved, solved.assemble().remainder(layout.length - 1).matrix)
+    hand_back(state, layout, solved, solved.remainder(layout.length - 1).matrix)
     keep_keyframes(state, layout, solved.x)
     for moved in moves:
         branch(state, moved)

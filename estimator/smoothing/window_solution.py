@@ -123,7 +123,7 @@ def _hand_back(state: FusionState, judged: JudgedImages, mountings: Sequence[Mod
     """Let the filter go on from the solution, and each node know where else it may be."""
     problem, x = judged.problem, judged.solved.x
     layout = problem.layout
-    left = judged.solved.chain.remainder(layout.length - 1)
+    left = judged.solved.remainder(layout.length - 1)
     left = turned(left, layout, problem.pivot_m, problem.first(x), x)
     hand_back(state, layout, judged.solved, left.matrix)
     for name, images in alternatives_now(layout, x, [*judged.modes, *mountings]).items():

@@ -33,7 +33,7 @@ class BatchSmoother:
         if not lifetimes:
             return {}
         problem, solved, modes = _likeliest(state)
-        solved.chain.solve()
+        solved.chain.reduce()
         covariances = solved.chain.covariances()
         widen_by_arcs(problem.layout, solved, covariances)
         doubt_scales(problem.layout, solved, covariances)

@@ -76,6 +76,7 @@ class Chain:
         self.promised = 0.0
         self._length = length
         self._cholesky = NOTHING
+        self._left: Array | None = None
         self._at_once = waited and sum(strand.wide.size for strand in self.strands) >= LARGE
 
     def each(self, work: Callable[..., T], *own: Iterable[object]) -> list[T]:
@@ -133,6 +134,8 @@ class Chain:
     def reduce(self, mend: bool = True) -> Array:
         """Eliminate all keyframes and factorise what is left of the border: all that `covariances` needs.
 
+        It is done once, however many ask for it.
+
         Args:
             mend: whether what is not positive definite is for rounding to answer for.
 
@@ -142,6 +145,8 @@ class Chain:
         Raises:
             ValueError: the matrix is not finite, or far from positive definite.
         """
+        if self._left is not None:
+            return self._left
         self.each(lambda strand: strand.eliminate(self._length, mend))
         corner, gradient = self._corner()
         try:
@@ -150,7 +155,13 @@ class Chain:
             if not mend:
                 raise
             self._cholesky = factorise(mended(corner))
+        self._left = gradient
         return gradient
+
+    @property
+    def reduced(self) -> bool:
+        """Whether all its keyframes have been eliminated: of none of them any remainder is left."""
+        return self._left is not None
 
     def solve(self, mend: bool = True) -> tuple[Array, Array]:
         """The step of all keyframes, k × n, and of the border, s; the arrays are used up.
@@ -172,7 +183,7 @@ class Chain:
         return steps, fixed
 
     def response(self, right: Array, corner: Array) -> tuple[Array, Array]:
-        """L⁻¹ of several right sides at once, after `solve`: how everything moves where a current is put in.
+        """L⁻¹ of several right sides at once, after `reduce`: how everything moves where a current is put in.
 
         Args:
             right: of the keyframes, k × n × c.

@@ -51,7 +51,7 @@ def doubt_delays(state: FusionState, problem: Problem, solved: Solution, other: 
     Args:
         state: takes it; its window is then to be solved again.
         problem: of the window.
-        solved: its solution, whose chain has been reduced.
+        solved: its solution.
         other: log odds of the likeliest other cause of what such a radio would do.
     """
     span_s = float(problem.layout.grid[-1] - problem.layout.grid[0])
@@ -82,7 +82,7 @@ def delay_odds(problem: Problem, solved: Solution) -> dict[str, float]:
 
     Args:
         problem: of a window, or of the whole incident.
-        solved: its solution, whose chain has been reduced.
+        solved: its solution.
     """
     found: dict[str, float] = {}
     for one in delays(problem, solved):
@@ -95,7 +95,7 @@ def delays(problem: Problem, solved: Solution) -> list[Delay]:
 
     Args:
         problem: of a window, or of the whole incident.
-        solved: its solution, whose chain has been reduced.
+        solved: its solution.
     """
     told = ranges_by_radio(problem, solved)
     return _likeliest(scored_delays(problem, solved, told), _rejected_radios(problem, solved, told))
@@ -117,6 +117,7 @@ def scored_delays(problem: Problem, solved: Solution, told: RangesByRadio) -> li
         return []
     right = bias_columns(problem, solved, told, np.array(asked))
     of_keyframes = right[:size].reshape(layout.length, layout.width, -1)
+    solved.chain.reduce()
     taken = solved.chain.explained(of_keyframes, right[size:])
     worth, found = _effective_share(problem, solved, told), []
     for i, radio in enumerate(asked):

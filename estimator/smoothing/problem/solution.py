@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from estimator.graph.dense import Array
 from estimator.graph.robust import Weighted
-from estimator.smoothing.chain.chain import Chain
+from estimator.smoothing.chain.chain import Chain, Remainder
 from estimator.smoothing.keyframes.walks import Motion
 from estimator.smoothing.readings.rows import Linearised
 
@@ -41,6 +41,13 @@ class Solution:
         Of most solutions only the cost is asked, and where they are.
         """
         return self.assemble()
+
+    def remainder(self, keyframe: int) -> Remainder:
+        """What lies before a keyframe, eliminated: see `Chain.remainder`.
+
+        Where somebody has eliminated its equations to their end already, they are made anew.
+        """
+        return (self.assemble() if self.chain.reduced else self.chain).remainder(keyframe)
 
 
 class Trial(NamedTuple):

@@ -12,7 +12,6 @@ import numpy as np
 
 from estimator.graph.dense import Array
 from estimator.graph.robust import mixture_cost
-from estimator.smoothing.chain.chain import Chain
 from estimator.smoothing.keyframes.walks import misfit
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
@@ -33,7 +32,7 @@ class MarginalCost(NamedTuple):
     each: Array
 
 
-def marginal_cost(problem: Problem, solved: Solution, chain: Chain) -> MarginalCost:
+def marginal_cost(problem: Problem, solved: Solution) -> MarginalCost:
     """What a solution costs over all that it might have been instead.
 
     It is to be compared with others of the same readings and keyframes, whose steps are as noisy but for how
@@ -41,12 +40,11 @@ def marginal_cost(problem: Problem, solved: Solution, chain: Chain) -> MarginalC
 
     Args:
         problem: of a window.
-        solved: its solution.
-        chain: its normal equations; they are used up.
+        solved: its solution, whose chain is eliminated here.
     """
     rows, walks = problem.rows, problem.layout.walks
-    chain.reduce()
-    walked, border = chain.log_determinants()
+    solved.chain.reduce()
+    walked, border = solved.chain.log_determinants()
     costs, own = mixture_cost(solved.linear.residual, rows.sigma, *rows.noise.T), np.zeros(len(walks))
     for i, (walk, motion) in enumerate(zip(walks, solved.motions, strict=True)):
         own[i] = costs[rows.of([walk.number])].sum() + misfit(motion)

@@ -71,16 +71,16 @@ def find_unseen_climb(
     state.level_cost = solved.cost / max(len(problem.rows.slab), 1)
     before: MarginalCost | None = None
     if not found.rests:
-        before = _as_it_is(problem, solved)
-        after = marginal_cost(trial, found, found.chain)
+        before = marginal_cost(problem, solved)
+        after = marginal_cost(trial, found)
         if (after.each[level] > before.each[level] + HOPELESS).all():
             return problem, solved
         found = trial.solve(found.x, resting=resting)
     rose = [i for i in level if np.ptp(_heights(problem, found.x, i)) > CLIMBED_M]
     if not rose or found.cost > solved.cost - CLEAR:
         return problem, solved
-    before = before or _as_it_is(problem, solved)
-    after = marginal_cost(trial, found, found.chain)
+    before = before or marginal_cost(problem, solved)
+    after = marginal_cost(trial, found)
     likelier = [i for i in rose if after.each[i] < before.each[i]]
     if likelier and likelier != level:
         # Heights of others, which fit noise, speak neither for nor against his.
@@ -90,17 +90,12 @@ def find_unseen_climb(
                 layout.states(x, i)[:, UP] = layout.states(solved.x, i)[:, UP]
         trial = _trial(problem, solved, likelier, build)
         found = trial.solve(x, resting=resting)
-        after = marginal_cost(trial, found, found.chain)
+        after = marginal_cost(trial, found)
     if not likelier or after.all > before.all - CLEAR:
         return problem, solved
     _let_climb(state, [layout.walks[i].number for i in likelier], layout.since_t)
     anew = build(state)
     return anew, anew.solve(found.x, resting=resting)
-
-
-def _as_it_is(problem: Problem, solved: Solution) -> MarginalCost:
-    """See `marginal_cost`: of a solution whose own equations are left for others."""
-    return marginal_cost(problem, solved, solved.assemble())
 
 
 def _trial(

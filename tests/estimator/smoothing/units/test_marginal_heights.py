@@ -61,7 +61,7 @@ def both() -> list[tuple[Problem, Solution]]:
 
 def test_the_likelihood_over_all_heights_is_that_of_the_whole_matrix() -> None:
     (level, flat), (climbing, found) = both()
-    before, after = (marginal_cost(p, s, s.chain).all for p, s in ((level, flat), (climbing, found)))
+    before, after = (marginal_cost(p, s).all for p, s in ((level, flat), (climbing, found)))
     expected = unlikelihood(climbing, found) - unlikelihood(level, flat)
     assert after - before == pytest.approx(expected - across(found) + across(flat), abs=1e-6)
 
@@ -74,7 +74,7 @@ def across(solved: Solution) -> float:
 
 def test_shares_of_walks_whose_readings_are_their_own_add_up_to_nearly_all() -> None:
     (level, flat), (climbing, found) = both()
-    before, after = (marginal_cost(p, s, s.chain) for p, s in ((level, flat), (climbing, found)))
+    before, after = (marginal_cost(p, s) for p, s in ((level, flat), (climbing, found)))
     shares = after.each - before.each
     assert shares.sum() == pytest.approx(after.all - before.all, abs=1.0)
 
@@ -82,7 +82,7 @@ def test_shares_of_walks_whose_readings_are_their_own_add_up_to_nearly_all() -> 
 def test_heights_that_fit_what_powers_scatter_by_are_not_likelier() -> None:
     (level, flat), (climbing, found) = both()
     assert found.cost < flat.cost
-    assert marginal_cost(climbing, found, found.chain).all > marginal_cost(level, flat, flat.chain).all
+    assert marginal_cost(climbing, found).all > marginal_cost(level, flat).all
 
 
 def test_on_one_floor_the_powers_of_ten_minutes_let_nobody_climb() -> None:
