@@ -60,7 +60,7 @@ from estimator.smoothing.learning.unit_noise import noise_scores
 from estimator.smoothing.learning.wrong_steps import disturbance_covariance, gains
 from estimator.smoothing.problem.gauge_turn import moved_from, turn_between
 from estimator.smoothing.readings.bodies import ahead
-from estimator.smoothing.readings.curvature import NormalMatrix, Numbers, add_curvature
+from estimator.smoothing.readings.curvature import BentPairs, NormalMatrix, Numbers, add_curvature
 from estimator.smoothing.readings.linearisation import (
     ANY,
     Readings,
@@ -197,7 +197,8 @@ def _warm_chain() -> None:
     change_pairs(np.eye(2), one, pair, turned_along(x, x, pair, place[0, :2]))
     pivot(np.eye(len(x)), x, Turning(pair, pair, pair[0]), place[0, :2])
     matrix = NormalMatrix(diagonal, wide, corner[None])
-    add_curvature(readings, slab, faced(x, slab), one, True, Numbers(slab, columns), matrix)
+    bent = BentPairs(readings.kind, readings.extra, readings.a, readings.b)
+    add_curvature(bent, slab, faced(x, slab), one, True, Numbers(slab, columns), matrix)
 
 
 def _warm_filter() -> None:

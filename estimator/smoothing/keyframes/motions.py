@@ -1,14 +1,33 @@
 """How all the walks of a window go between their keyframes."""
 
+from collections.abc import Sequence
 from copy import copy
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
-from estimator.graph.dense import Array
+from estimator.graph.dense import Array, Indices
 from estimator.smoothing.keyframes.layout import Layout, Walk
 from estimator.smoothing.keyframes.unknowns import Unknowns
 from estimator.smoothing.keyframes.walks import STATES, Free, Motion, free_motions, reckon, unit_motion
+
+
+class UnitSteps(NamedTuple):
+    """The steps of all units one behind the other: linearised at once they cost one compiled call.
+
+    Between the last keyframe of one walk and the first one of the next lies a step that nobody asks for.
+
+    Attributes:
+        own: which steps are each walk's.
+        at: rows of their keyframes in an estimate, each of its walks' states a row, m.
+        durations_s: of each step, m − 1.
+        between: sums of each step, (m − 1) × 12 (see `Way.between`).
+    """
+
+    own: dict[int, slice]
+    at: Indices
+    durations_s: Array
+    between: Array
 
 
 class Motions:
@@ -21,6 +40,7 @@ class Motions:
     def __init__(self, layout: Layout) -> None:
         self._layout = layout
         self._ways = [self._way(i, walk) for i, walk in enumerate(layout.walks)]
+        self._units = unit_steps(layout, self._ways)
 
     def _way(self, index: int, walk: Walk) -> tuple[Array, Array | Free]:
         """Times between a walk's keyframes, and what lies between them."""
@@ -39,18 +59,20 @@ class Motions:
             some = between.first(steps) if isinstance(between, Free) else between[:steps]
             ways.append((durations[:steps], some))
         other = copy(self)
-        vars(other).update(_layout=numbers.layout, _ways=ways)
+        vars(other).update(_layout=numbers.layout, _ways=ways, _units=unit_steps(numbers.layout, ways))
         return other
 
     def motions(self, x: Array) -> list[Motion]:
         """Each walk's motion at an estimate, flat."""
-        found = []
-        for i, (walk, (durations, between)) in enumerate(zip(self._layout.walks, self._ways, strict=True)):
-            states = self._layout.states(x, i)[walk.first : walk.last + 1].copy()
+        layout, units, found = self._layout, self._units, list[Motion]()
+        rows = x[: layout.length * layout.width].reshape(-1, STATES)
+        led = unit_motion(units.between, units.durations_s, rows[units.at]) if units.own else None
+        for i, (walk, (_, between)) in enumerate(zip(layout.walks, self._ways, strict=True)):
             if isinstance(between, Free):
-                found.append(between.motion(states))
-            else:
-                found.append(unit_motion(between, durations, states))
+                found.append(between.motion(layout.states(x, i)[walk.first : walk.last + 1]))
+            elif led is not None:
+                own = units.own[i]
+                found.append(Motion(led[0][own], led[1][own], led[2][own], led[3][own]))
         return found
 
     def reckoned(self, x: Array, since_t: float) -> Array:
@@ -80,3 +102,28 @@ class Motions:
                 until = np.searchsorted(times, times[1:] + within_s).clip(max=len(times) - 1)
                 layout.states(there, i)[walk.first : walk.last] += bent[until] - bent[:-1]
         return there
+
+
+def unit_steps(layout: Layout, ways: Sequence[tuple[Array, Array | Free]]) -> UnitSteps:
+    """The steps of all units of a window.
+
+    Args:
+        layout: of the window.
+        ways: times between each walk's keyframes (s), and what lies between them.
+    """
+    own: dict[int, slice] = {}
+    at, durations_s, sums, begun = list[Indices](), list[Array](), list[Array](), 0
+    for i, (walk, (each_s, between)) in enumerate(zip(layout.walks, ways, strict=True)):
+        if isinstance(between, Free):
+            continue
+        if own:
+            durations_s.append(np.zeros(1))
+            sums.append(np.zeros((1, between.shape[1])))
+        own[i] = slice(begun, begun + len(each_s))
+        begun += len(each_s) + 1
+        at.append(np.arange(walk.first, walk.last + 1) * len(layout.walks) + i)
+        durations_s.append(each_s)
+        sums.append(between)
+    if not own:
+        return UnitSteps(own, np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros((0, 0)))
+    return UnitSteps(own, np.concatenate(at), np.concatenate(durations_s), np.concatenate(sums))

@@ -23,7 +23,7 @@ from estimator.smoothing.problem.held_quadratic import HeldQuadratic
 from estimator.smoothing.problem.marginal_prior import MarginalPrior
 from estimator.smoothing.problem.solution import Trial
 from estimator.smoothing.problem.sparsity import Sparsity
-from estimator.smoothing.readings.curvature import NormalMatrix, Numbers, add_curvature
+from estimator.smoothing.readings.curvature import BentPairs, NormalMatrix, Numbers, add_curvature
 from estimator.smoothing.readings.rows import Linearised, Rows
 from estimator.smoothing.readings.weights import weigh_readings
 
@@ -184,13 +184,14 @@ class Objective:
             weighted: how the rows are weighed.
             signed: negative curvature too; see `curvature.add_curvature`.
         """
-        rows, placed = self.rows, self.coupled.rows
-        estimate = faced(x, rows.readings.headings)  # once for all strands
+        readings, placed = self.rows.readings, self.coupled.rows
+        estimate = faced(x, readings.headings)  # once for all strands
+        bent = BentPairs(readings.kind, readings.extra, readings.a, readings.b)
         weight, numbers = weighted.information * weighted.residual, Numbers(placed.slab, placed.columns)
 
         def add(strand: Strand, part: Indices) -> None:
             if len(part):
                 matrix = NormalMatrix(strand.diagonal, strand.wide, strand.corner[None])
-                add_curvature(rows.readings, part, estimate, weight, signed, numbers, matrix)
+                add_curvature(bent, part, estimate, weight, signed, numbers, matrix)
 
         chain.each(add, self.coupled.pairs)

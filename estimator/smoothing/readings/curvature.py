@@ -11,11 +11,26 @@ from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.measurements.range import range_slope
 from estimator.measurements.rssi import ANTENNA_M, rssi_slope
-from estimator.smoothing.keyframes.ends import place_end
+from estimator.smoothing.keyframes.ends import Table, place_end
 from estimator.smoothing.keyframes.walks import PLACES, STATES
-from estimator.smoothing.readings.linearisation import Readings
 
 NOWHERE_M2 = 1e-6
+
+
+class BentPairs(NamedTuple):
+    """What the curvature of m pairs follows from: each array of a call is unpacked by every one of them.
+
+    Attributes:
+        kind: see `linearisation.Readings`, as the others.
+        extra: the same.
+        a: the same.
+        b: the same.
+    """
+
+    kind: Integers
+    extra: Integers
+    a: Table
+    b: Table
 
 
 class Numbers(NamedTuple):
@@ -46,7 +61,7 @@ class NormalMatrix(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def add_curvature(
-    readings: Readings,
+    pairs: BentPairs,
     chosen: Integers,
     estimate: Array,
     weight: Array,
@@ -63,8 +78,8 @@ def add_curvature(
     where a whole incident may still turn: it takes away what is positive there.
 
     Args:
-        readings: of the window.
-        chosen: which pairs.
+        pairs: of the window.
+        chosen: which of them.
         estimate: see `ends.faced`.
         weight: P⁻¹ r of each pair, r as it is weighed, m at least.
         signed: take negative curvature along the floor too; else only what is positive.
@@ -78,7 +93,7 @@ def add_curvature(
     diagonal, wide, corner = matrix
     width = diagonal.shape[1]
     # What is taken out of a tuple in the loop is counted in the loop.
-    ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
+    kinds, extra, ends_a, ends_b = pairs
     for i in chosen:
         kind = kinds[i]
         if kind > RSSI:
