@@ -10,8 +10,8 @@ from estimator.fusion.memory.state import FusionState
 from estimator.graph.robust import mixture_cost
 from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
 from estimator.smoothing.changes.branch import branch, reunite
-from estimator.smoothing.changes.moved_nodes import MovedNode, moved_nodes
-from estimator.smoothing.changes.relocation import GAIN, USUAL_COST
+from estimator.smoothing.changes.moved_nodes import moved_nodes
+from estimator.smoothing.changes.relocation import GAIN, USUAL_COST, MovedNode
 from estimator.smoothing.changes.told_places import believe
 from estimator.smoothing.images.alternatives import Mode
 from estimator.smoothing.keyframes.layout import Layout
@@ -20,7 +20,7 @@ from estimator.smoothing.learning.range_noise import learn_ranging
 from estimator.smoothing.learning.trusted_radios import distrust, trust_dropped
 from estimator.smoothing.learning.unit_noise import learn
 from estimator.smoothing.learning.wrong_steps import withdraw
-from estimator.smoothing.problem.newton import RESTING, Problem
+from estimator.smoothing.problem.newton import METRES_OFF, RESTING, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.told_causes import ask
@@ -28,7 +28,6 @@ from estimator.smoothing.units.unit_mounting import likeliest_mounting
 from estimator.smoothing.units.unseen_climbs import find_unseen_climb
 from estimator.smoothing.window_extent import spacing_s as usual_s
 
-SLACKS_M = (3.0, 1.0, 0.3, 0.1)
 LEARNING = (1.5, 1.0, 0.5)
 """How far the logarithms of noise variances may move, solution by solution."""
 LEARNING_RESTING = 1.0
@@ -123,7 +122,7 @@ def _solved(state: FusionState) -> tuple[Problem, Solution]:
 def _initial_solution(state: FusionState) -> tuple[Problem, Solution]:
     """A first solution to learn noise from, with moved nodes, unseen climbs and unit mountings found."""
     problem = _problem(state)
-    solved = problem.solve(problem.layout.start(), SLACKS_M, resting=LEARNING_RESTING)
+    solved = problem.solve(problem.layout.start(), METRES_OFF, resting=LEARNING_RESTING)
     problem, solved = find_unseen_climb(problem, solved, _problem, LEARNING_RESTING)
     problem, solved, _ = likeliest_mounting(problem, solved, _problem, LEARNING_RESTING, -math.inf)
     problem, solved = _freed(problem, solved)
@@ -141,7 +140,7 @@ def _freed(problem: Problem, solved: Solution) -> tuple[Problem, Solution]:
         if not causes.correct(state):
             break
         problem = _problem(state)
-        solved = problem.solve(solved.x, SLACKS_M, resting=LEARNING_RESTING)
+        solved = problem.solve(solved.x, METRES_OFF, resting=LEARNING_RESTING)
     return problem, solved
 
 
@@ -176,7 +175,7 @@ def _with_moved_nodes(problem: Problem, solved: Solution, resting: float) -> tup
             break
         _branch_moved(problem, solved, moves)
         problem = _problem(problem.layout.state)
-        solved = problem.solve(problem.layout.start(), SLACKS_M, resting=resting)
+        solved = problem.solve(problem.layout.start(), METRES_OFF, resting=resting)
     return problem, solved
 
 

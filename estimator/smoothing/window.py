@@ -73,7 +73,7 @@ def solve_now(state: FusionState, t: float) -> None:
     state.due, state.refreshed_t, state.bent_m = False, t, 0.0
     if refresh(state, solved_t) and state.due:
         state.due = False
-        refresh(state, t)
+        refresh(state, t, bent=True)
         # What was bent is rarely straight after one solution.
         state.suspected = True
 

@@ -18,7 +18,7 @@ from estimator.smoothing.images.likeliest_image import JudgedImages, likeliest_i
 from estimator.smoothing.images.solutions import SLACKS_M
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.problem.gauge_turn import turned
-from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.units.turned_frames import may_have_turned, turned_frames
@@ -36,12 +36,13 @@ RESTING = 0.1
 """A window that gains less in log likelihood is solved again soon anyway."""
 
 
-def refresh(state: FusionState, solved_t: float) -> bool:
+def refresh(state: FusionState, solved_t: float, bent: bool = False) -> bool:
     """Solve the window again, and go on from its solution.
 
     Args:
         state: the fusion, changed in place.
         solved_t: when it was last solved (s).
+        bent: something has just been told that may have bent it all.
 
     Returns:
         False where it has none: the filter goes on as it was.
@@ -51,7 +52,7 @@ def refresh(state: FusionState, solved_t: float) -> bool:
         restart(state)
         return False
     try:
-        judged, mountings = _likeliest(state, since, solved_t)
+        judged, mountings = _likeliest(state, since, solved_t, bent)
         state.exposed = judged.exposed
         trimmed = trim(judged.problem, judged.solved)
         _hand_back(state, judged, mountings)
@@ -75,11 +76,16 @@ def _since(state: FusionState) -> float:
     return float(min(rows[:, 0].min() for rows in beginnings if len(rows)))
 
 
-def _likeliest(state: FusionState, since: float, solved_t: float) -> tuple[JudgedImages, list[Mode]]:
+def _likeliest(
+    state: FusionState, since: float, solved_t: float, bent: bool
+) -> tuple[JudgedImages, list[Mode]]:
     """The likeliest solution, with climbs, turned frames, mountings and images tried; others by mountings."""
     build = partial(_problem, since=since)
     problem = build(state)
     solved = _solved(problem, problem.layout.start(), solved_t)
+    if bent:
+        straight = problem.solve(solved.x, METRES_OFF, len(METRES_OFF) + ITERATIONS, RESTING)
+        solved = min(solved, straight, key=lambda found: found.cost)
     if hinted(problem, solved):
         problem, solved = find_unseen_climb(problem, solved, build, RESTING)
     problem, solved = turned_frames(problem, solved, build, RESTING)

@@ -11,7 +11,7 @@ from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.measurements.node import MOVING_ROLES
-from estimator.smoothing.changes.moved_nodes import MovedNode
+from estimator.smoothing.changes.relocation import MovedNode
 
 
 def branch(state: FusionState, moved: MovedNode) -> None:

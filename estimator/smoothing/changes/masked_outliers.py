@@ -8,11 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from estimator.fusion.entering.modes import find_modes
+from estimator.fusion.entering.modes import costs_of, find_modes
 from estimator.fusion.memory.nodes import NodeState
 from estimator.graph.chain_kernels import Integers
+from estimator.graph.dense import Array
 from estimator.smoothing.changes.relocation import FAR_M, NodeReadings, Place, clear_place, readings_of
-from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from estimator.smoothing.problem.solution import Solution
 
 DISAGREEING = 5.0
@@ -26,12 +27,14 @@ class MaskedOutliers(NamedTuple):
     """Where readings put a node that have drawn others along.
 
     Attributes:
-        place: its place.
+        place: its place; the gain is of all readings together.
         alone: the solution without them, which is not bent by them.
+        relief: what all others gain without them, in log likelihood.
     """
 
     place: Place
     alone: Solution
+    relief: float
 
 
 def masked_place(
@@ -50,35 +53,55 @@ def masked_place(
     here = readings_of(problem, solved, node, mine[problem.rows.held[mine]])
     if here is None or not _may_disagree(here):
         return None
+    drawn = place_without(problem, solved, node, mine)
+    return None if drawn is None or drawn.relief <= RELIEF else drawn
+
+
+def place_without(
+    problem: Problem, solved: Solution, node: NodeState, mine: Integers
+) -> MaskedOutliers | None:
+    """The same of readings that need not disagree with their node's place, nor have drawn anybody."""
+    here = readings_of(problem, solved, node, mine[problem.rows.held[mine]])
+    if here is None:
+        return None
     sigma = problem.rows.sigma
     try:
-        return _without(problem, solved, node, here.rows)
+        return _without(problem, solved, node, here.rows, sigma[here.rows])
     finally:
         # Whoever is asked next is asked by the noise that the window was solved with.
         problem.rows.sigma = sigma
 
 
-def _without(problem: Problem, solved: Solution, node: NodeState, mine: Integers) -> MaskedOutliers | None:
+def _without(
+    problem: Problem, solved: Solution, node: NodeState, mine: Integers, sigma: Array
+) -> MaskedOutliers | None:
     """The place that readings `mine` have for a node, if they and all others fit clearly better with it."""
     # What the last steps have left is nobody's fault.
     solved = problem.solve(solved.x, iterations=ITERATIONS)
     others = problem.without(mine)
     try:
-        alone = others.solve(solved.x, iterations=ITERATIONS)
+        # What they have bent is not to be an outlier for that.
+        alone = others.solve(solved.x, METRES_OFF, len(METRES_OFF) + ITERATIONS)
     except ValueError:
         # Without them something hangs in the air: they have held it, not bent it.
         return None
     relief = others.cost(solved.x, solved.linear.residual, solved.motions) - alone.cost
     here, there = (readings_of(problem, one, node, mine) for one in (solved, alone))
-    if here is None or there is None or relief <= RELIEF:
+    if here is None or there is None:
         return None
     modes = find_modes(there.sought)
     if not modes:
         return None
-    before = float(here.costs(here.residual).sum()) + relief
-    after = float(there.costs(there.residual_at(modes[0].position_m)).sum())
+    before = _cost(here, here.residual, sigma) + relief
+    after = _cost(there, there.residual_at(modes[0].position_m), sigma)
     place = clear_place(there, modes[0], before, after)
-    return None if place is None else MaskedOutliers(place, alone)
+    return None if place is None else MaskedOutliers(place, alone, relief)
+
+
+def _cost(seen: NodeReadings, residual: Array, sigma: Array) -> float:
+    """What ranges cost by the noise that their window was solved with, in log likelihood."""
+    ranged = np.full(len(residual), seen.sought.kind == "range")
+    return float(costs_of(residual, sigma, seen.noise, ranged, seen.alike).sum())
 
 
 def _may_disagree(seen: NodeReadings) -> bool:

@@ -5,7 +5,6 @@ another one.
 """
 
 from copy import copy
-from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -16,10 +15,14 @@ from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.graph.robust import cauchy_cost
+from estimator.smoothing.changes.drawing_nodes import drawing_nodes, may_be_kicked
 from estimator.smoothing.changes.masked_outliers import masked_place
 from estimator.smoothing.changes.relocation import (
+    GAIN,
     READINGS_MIN,
     USUAL_COST,
+    MovedNode,
+    Place,
     best_place,
     changed_t,
     contradicted,
@@ -38,20 +41,8 @@ DOUBT, NEW_S = 1.5, 30.0
 """The same of the newest readings before a window is solved again soon."""
 LATEST = 3
 """So many later beginnings of a disagreement are looked at as well."""
-
-
-class MovedNode(NamedTuple):
-    """A node that lies elsewhere.
-
-    Attributes:
-        name: the node.
-        since_t: the first epoch at which its readings agree with the new place (s).
-        readings: how many were made since.
-    """
-
-    name: str
-    since_t: float
-    readings: int
+CLEARER = 5.0
+"""So much better, in log likelihood, all readings must fit with the one elsewhere than with another one."""
 
 
 def moved_nodes(
@@ -81,16 +72,14 @@ def moved_nodes(
     cost, usual = np.empty(m), np.empty(m)
     cost[recent] = cauchy_cost(residual / sigma, CAUCHY)
     usual[recent] = costs_of(residual, sigma, rows.noise[recent], kinds[recent] == RANGE, rows.alike[recent])
-    found: list[tuple[float, MovedNode]] = []
-    suspected = False
-    for node in state.nodes.values():
-        if node.mode != "static" or node.role == "anchor":
-            continue
+    found: dict[str, tuple[Place, MovedNode]] = {}
+    suspected, doubted = False, dict[str, Integers]()
+    for node in filter(may_be_kicked, state.nodes.values()):
         for together in BY_KIND if solved.rests else (*ALL_KINDS, *BY_KIND):
             if measured.isdisjoint(together):
                 continue
             kind = -1 if together in ALL_KINDS else together[0]
-            own, mine, suspicious, since, before = test_place(
+            own, mine, suspicious, after, before = test_place(
                 recent, rows.pairs, node.index, kind, usual, cost, now - NEW_S
             )
             if len(mine) < READINGS_MIN:
@@ -99,14 +88,19 @@ def moved_nodes(
             asked = solved.rests or together in ALL_KINDS
             if not asked and together != (RANGE,):
                 continue
-            parts = [mine[first:] for first in since.tolist()]
+            parts = [mine[first:] for first in after.tolist()]
             # It may be drawn to its new place already: then what disagrees lies in front.
             parts += [mine[: len(mine) - first] for first in before.tolist()]
             place, by = best_place(problem, solved, node, parts) if asked else None, solved
+            if together == (RANGE,) and parts:
+                since = _since(rows.pairs, node.index, parts[0])
+                # Less than that nobody gains who is drawn to where he is not; walls are no reason to ask.
+                if rows.pairs[since[-1], 0] > now - NEW_S and usual[parts[0]].sum() > GAIN:
+                    doubted[node.node] = since
             if place is None and together == (RANGE,) and parts and rows.pairs[parts[0][0], 0] > now - NEW_S:
-                drawn = masked_place(whole, solved, node, _since(rows.pairs, node.index, parts[0]))
+                drawn = masked_place(whole, solved, node, since)
                 if drawn is not None:
-                    place, by = drawn
+                    place, by = drawn.place, drawn.alone
             if place is None:
                 continue
             since_t = changed_t(problem, by, node, mine, place)
@@ -114,12 +108,22 @@ def moved_nodes(
             if RANGE not in together and contradicted(problem, solved, node, later, place.position_m):
                 suspected = True
                 continue
-            found.append((place.far_m, MovedNode(node.node, since_t, len(later))))
+            found[node.node] = place, MovedNode(node.node, since_t, len(later))
             break
-    if solved.rests and found:
+    if not solved.rests:
+        return [moved for _, moved in found.values()], suspected
+    drawing = drawing_nodes(whole, solved, doubted, now)
+    if not drawing:
         # One that lies elsewhere makes its neighbours seem to, but less far: they are asked again without it.
-        return [max(found, key=itemgetter(0))[1]], suspected or len(found) > 1
-    return [moved for _, moved in found], suspected
+        farthest = max(found.values(), key=lambda one: one[0].far_m, default=None)
+        return [] if farthest is None else [farthest[1]], suspected or len(found) > 1
+    for name in doubted.keys() & found.keys():
+        place, moved = found[name]
+        drawing[name] = max(drawing.get(name, (0.0, moved)), (place.gain, moved))
+    (gain, moved), *others = sorted(drawing.values(), reverse=True)
+    # Of two that explain the same equally well it is not known which one it is.
+    clear = not others or gain > others[0][0] + CLEARER
+    return [moved] if clear else [], True
 
 
 def _since(pairs: Array, number: int, mine: Integers) -> Integers:

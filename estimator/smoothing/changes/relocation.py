@@ -22,6 +22,20 @@ UNSURE_M = 0.3
 UP_SIGMA_M = 1.0
 
 
+class MovedNode(NamedTuple):
+    """A node that lies elsewhere.
+
+    Attributes:
+        name: the node.
+        since_t: the first epoch at which its readings agree with the new place (s).
+        readings: how many were made since.
+    """
+
+    name: str
+    since_t: float
+    readings: int
+
+
 class NodeReadings(NamedTuple):
     """Readings to one node by one technology, in order of epoch.
 
@@ -116,10 +130,12 @@ def _elsewhere(seen: NodeReadings) -> Place | None:
     best = modes[0]
     before = float(seen.costs(seen.residual).sum())
     after = float(seen.costs(seen.residual_at(best.position_m)).sum())
-    return clear_place(seen, best, before, after)
+    return clear_place(seen, best, before, after, max(FAR_M, 2.0 * best.sigma_m))
 
 
-def clear_place(seen: NodeReadings, best: Mode, before: float, after: float) -> Place | None:
+def clear_place(
+    seen: NodeReadings, best: Mode, before: float, after: float, least_m: float = FAR_M
+) -> Place | None:
     """The place of a mode, if it explains readings clearly better than the one that their node has.
 
     Args:
@@ -127,9 +143,10 @@ def clear_place(seen: NodeReadings, best: Mode, before: float, after: float) -> 
         best: their mode.
         before: what they cost with their node where it is thought to be, in log likelihood.
         after: what they cost with it at the mode.
+        least_m: how far it has to be (m).
     """
     far_m = float(np.hypot(*(best.position_m - seen.place_m)[:2]))
-    clear = far_m > max(FAR_M, 2.0 * best.sigma_m) and before - after > GAIN and after < len(seen.t)
+    clear = far_m > least_m and before - after > GAIN and after < len(seen.t)
     return Place(best.position_m, far_m, before - after, seen) if clear else None
 
 

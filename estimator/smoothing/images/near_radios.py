@@ -19,7 +19,7 @@ from estimator.smoothing.images.earlier_images import CLEARER, LEAST
 from estimator.smoothing.images.heard_radios import FIX
 from estimator.smoothing.images.local_solution import local_solution
 from estimator.smoothing.keyframes.layout import Layout, Walk
-from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from estimator.smoothing.problem.solution import Solution
 
 RADIOS = 3
@@ -28,7 +28,6 @@ NEAR_S = 3.0
 """Signals fade and come back: for about so long somebody is near the radios that he has heard best."""
 FREE_SPACE = 2.0
 """Powers weigh as the inverse of a distance does by this exponent."""
-SLACKS_M = (3.0, 1.0, 0.3, 0.1)
 
 
 class _Powers(NamedTuple):
@@ -60,7 +59,7 @@ def starts_near_radios(problem: Problem, solved: Solution, whole: bool) -> tuple
     moved = [i for i, walk in enumerate(layout.walks) if _put_among(problem, solved, i, walk, there)]
     if not moved:
         return solved, []
-    other = local_solution(problem, there, SLACKS_M, solved)
+    other = local_solution(problem, there, METRES_OFF, solved)
     if other is None:
         return solved, []
     best, less = (other, solved) if other.cost < solved.cost - CLEARER else (solved, other)

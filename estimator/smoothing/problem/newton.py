@@ -23,6 +23,8 @@ CLOSE = 0.3
 NOWHERE = 1e9
 """No place, angle or speed is a larger number: coordinates end at a hundred kilometres."""
 LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e3
+METRES_OFF = (3.0, 1.0, 0.3, 0.1)
+"""Slacks for a start that may be metres off, or bent by as much (m)."""
 
 
 class Problem(Objective):

@@ -16,7 +16,7 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.measurements.retire import Retire
 from estimator.smoothing.changes.branch import branch, reunite
-from estimator.smoothing.changes.moved_nodes import MovedNode
+from estimator.smoothing.changes.relocation import MovedNode
 from tests.estimator.smoothing.windows import fused
 
 TURNED_S = 30.0

@@ -68,7 +68,7 @@ def test_where_all_others_fit_better_without_them_its_ranges_tell_where_it_lies(
     node = problem.layout.state.nodes["b3"]
     found = masked_place(problem, solved, node, mine)
     assert found is not None
-    place, alone = found
+    place, alone = found.place, found.alone
     there, beside = (shown.truth[name].position_m[-1] for name in ("b3", "b2"))
     size = problem.layout.length * problem.layout.width
     start = size + problem.layout.stands[problem.layout.state.nodes["b2"].index]

@@ -11,9 +11,8 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.smoothing.learning.delays import delay_of, delays, doubted
 from estimator.smoothing.learning.radios import Delay, ranges_by_radio
-from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from estimator.smoothing.problem.solution import Solution
-from estimator.smoothing.whole import SLACKS_M
 from tests.estimator.smoothing.windows import fused, problem_of
 
 VEHICLE_M = {
@@ -43,7 +42,7 @@ def round_the_vehicle(seed: int, delay_m: float) -> list[AnyReading]:
 
 def at_rest(readings: list[AnyReading]) -> tuple[Problem, Solution]:
     problem = problem_of(fused(readings))
-    begun = problem.solve(problem.layout.start(), SLACKS_M)
+    begun = problem.solve(problem.layout.start(), METRES_OFF)
     return problem, problem.solve(begun.x)
 
 

@@ -16,9 +16,8 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.smoothing.learning.delay_scores import lag_one_correlation
 from estimator.smoothing.learning.range_noise import explained_count, learn_ranging
-from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from estimator.smoothing.problem.solution import Solution
-from estimator.smoothing.whole import SLACKS_M
 from estimator.trackers import smoother
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.kirchhoff import KirchhoffTracker
@@ -82,7 +81,7 @@ def solved_with(state: FusionState, factor: float) -> tuple[Problem, Solution]:
     learned = state.learned("uwb")
     state.noise["uwb"] = replace(learned, count=NOISE_MEMORY, squares=squares, products=0.0)
     problem = problem_of(state)
-    solved = problem.solve(problem.layout.start(), SLACKS_M)
+    solved = problem.solve(problem.layout.start(), METRES_OFF)
     solved.chain.reduce()
     return problem, solved
 

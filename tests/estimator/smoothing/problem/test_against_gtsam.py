@@ -17,8 +17,7 @@ from estimator.graph.dense import Array, Indices
 from estimator.measurements import AnyReading
 from estimator.simulate import paper_a
 from estimator.smoothing.keyframes.walks import STATES
-from estimator.smoothing.problem.newton import Problem
-from estimator.smoothing.whole import SLACKS_M
+from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from tests.estimator.smoothing.windows import fused, problem_of
 from tests.estimator.walks import two_responders
 
@@ -185,7 +184,7 @@ def problem(request: pytest.FixtureRequest) -> Problem:
 
 def test_the_smoothed_solution_costs_no_more_than_gtsams_optimum(problem: Problem) -> None:
     start = problem.layout.start()
-    ours = problem.solve(start, SLACKS_M)
+    ours = problem.solve(start, METRES_OFF)
     theirs = optimum(problem, start, ours.x)
     assert misfit(problem, ours.x) <= 1.001 * misfit(problem, theirs)
 
@@ -193,7 +192,7 @@ def test_the_smoothed_solution_costs_no_more_than_gtsams_optimum(problem: Proble
 def test_solved_until_it_rests_everything_is_where_gtsam_puts_it(problem: Problem) -> None:
     """Beside a radio powers have an edge, and optima on both sides of it: GTSAM's better one counts."""
     layout, start = problem.layout, problem.layout.start()
-    begun = problem.solve(start, SLACKS_M)
+    begun = problem.solve(start, METRES_OFF)
     ours = begun
     for _ in range(AGAIN):
         ours = problem.solve(ours.x, resting=AT_REST)
