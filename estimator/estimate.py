@@ -40,6 +40,7 @@ class NodeEstimate(msgspec.Struct, frozen=True, kw_only=True, array_like=True, g
 NoticeCode = Literal[
     "not_fused",
     "too_late",
+    "introduced_late",
     "node_moved",
     "came_back",
     "unit_changed",

@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterable, Sequence
 
 import msgspec
-from msgspec.structs import replace
 
 from backend.live.record import PictureRecord, RecordAlarm, RecordAside, RecordNode, RecordNotice
 from backend.log.base import LoggedBatch
@@ -15,7 +14,6 @@ from backend.tracking.set_aside import after_batch
 from estimator.estimate import NodeEstimate, Notice
 from estimator.fusion.holding import names_of
 from estimator.measurements import Alarm, AnyReading, Node, Retire, Status
-from estimator.measurements.node import MOVING_ROLES, Role
 from estimator.measurements.status import AlarmKind
 
 NOTICES_KEPT = 32
@@ -39,8 +37,6 @@ class NodeBoard(msgspec.Struct):
         told_t: epoch of the newest status that told each of the four, at most when that came, Unix seconds.
         air_first_bar: the highest pressure that the cylinder in use was reported with (bar).
         air_least_bar: the lowest one (bar).
-        introduced: the tracker was told what it is.
-        role: what it is, where that was told too late for the tracker, which guesses; else None.
         moved_t: when it was last noticed to have been moved, Unix seconds.
     """
 
@@ -56,15 +52,6 @@ class NodeBoard(msgspec.Struct):
     told_t: dict[str, float] = msgspec.field(default_factory=dict)
     air_first_bar: float | None = None
     air_least_bar: float | None = None
-    introduced: bool = False
-    role: Role | None = None
-
-    def is_told(self, reading: Node, fused: bool) -> None:
-        """Note an introduction, which the tracker has fused, or which came too late for it."""
-        self.callsign = reading.callsign if reading.callsign is not None else self.callsign
-        self.crew = reading.crew if reading.crew is not None else self.crew
-        self.introduced = self.introduced or fused
-        self.role = None if self.introduced else reading.role
 
     def breathes(self, air_bar: float) -> None:
         """Note a reported pressure (bar), which belongs to the cylinder in use or begins another."""
@@ -95,15 +82,12 @@ class Board(msgspec.Struct):
     aside: dict[str, RecordAside] = msgspec.field(default_factory=dict)
     clocks: dict[str, GatewayClock] = msgspec.field(default_factory=dict)
 
-    def fold(
-        self, readings: Iterable[AnyReading], known_t: float = math.inf, fused_from_t: float = -math.inf
-    ) -> None:
+    def fold(self, readings: Iterable[AnyReading], known_t: float = math.inf) -> None:
         """Take readings in, in their order.
 
         Args:
             readings: they are.
             known_t: when they came, where the incident goes by the server's clock, Unix seconds.
-            fused_from_t: those of earlier epochs come too late for the tracker, Unix seconds.
         """
         for reading in readings:
             if reading.until_t > known_t or self.came_t:
@@ -117,7 +101,7 @@ class Board(msgspec.Struct):
                 case Alarm():
                     self._alarmed(reading)
                 case Node():
-                    self._node(reading.node, reading.t).is_told(reading, reading.until_t >= fused_from_t)
+                    self._named(reading)
                 case Retire():
                     self._retired(reading)
 
@@ -163,6 +147,11 @@ class Board(msgspec.Struct):
             known = self.nodes[node] = NodeBoard(t=t)
         known.t = max(known.t, t)
         return known
+
+    def _named(self, reading: Node) -> None:
+        known = self._node(reading.node, reading.t)
+        known.callsign = reading.callsign if reading.callsign is not None else known.callsign
+        known.crew = reading.crew if reading.crew is not None else known.crew
 
     def _retired(self, reading: Retire) -> None:
         # The newest one's, or none: who came back and leaves again does so for a reason of his own.
@@ -218,16 +207,7 @@ class Board(msgspec.Struct):
     def _joined(self, estimate: NodeEstimate) -> RecordNode:
         told = self.nodes.get(estimate.node) or NodeBoard(t=estimate.t)
         _, reason = self.retired.get(estimate.node, (0.0, None))
-        if told.role is not None:
-            estimate = _as_told(estimate, told.role)
         return _record_of(estimate, told, min(estimate.t, self.came_t.get(estimate.node, math.inf)), reason)
-
-
-def _as_told(estimate: NodeEstimate, role: Role) -> NodeEstimate:
-    """An estimate of whom the tracker was told too late; no place where it takes one who moves to stand."""
-    if role in MOVING_ROLES and estimate.role not in MOVING_ROLES:
-        estimate = replace(estimate, position_m=None, covariance_m2=None)
-    return replace(estimate, role=role)
 
 
 def _record_of(estimate: NodeEstimate, told: NodeBoard, t: float, retire_reason: str | None) -> RecordNode:

@@ -18,7 +18,7 @@ from estimator.estimate import Relative
 from estimator.measurements import Alarm, AnyReading
 from estimator.trackers.base import Tracker, TrackerSettings
 
-VERSION = 8
+VERSION = 9
 
 STOOD_S = 2.0
 """What was shown for longer is recorded as it was, whatever comes later. Gateways post once a second or more
@@ -141,7 +141,7 @@ class IncidentFold:
             if second is not None and piece.newest_t > second:
                 row = self._made(second)
             self._tracker.fold(piece.readings, known_t)
-            self._board.fold(piece.readings, known_t, (self.newest_t or -math.inf) - self._settings.lag_s)
+            self._board.fold(piece.readings, known_t)
             self.newest_t = piece.newest_t
             if self._second != second:
                 self.begun = came_t

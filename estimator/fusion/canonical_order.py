@@ -9,9 +9,10 @@ import msgspec
 
 from estimator.fusion.physics import TICK_S
 from estimator.inertial.samples import AnyFolded
-from estimator.measurements.node import Node
+from estimator.measurements.node import LateNode, Node
 
 _encode = msgspec.msgpack.Encoder().encode
+INTRODUCTIONS = frozenset((Node, LateNode))
 UNTIL_T = attrgetter("until_t")
 """Until when a reading tells, for a search among readings in their order."""
 
@@ -23,14 +24,17 @@ def in_order(readings: Iterable[AnyFolded]) -> list[AnyFolded]:
         together = list(same)
         if len(together) > 1:
             together.sort(key=_encode)
-            if Node in map(type, together):
-                together.sort(key=_follows)
+            if not INTRODUCTIONS.isdisjoint(map(type, together)):
+                together.sort(key=_rank)
         ordered += together
     return ordered
 
 
-def _follows(reading: AnyFolded) -> bool:
-    return not isinstance(reading, Node)
+def _rank(reading: AnyFolded) -> tuple[int, float]:
+    """Introductions first, and of those too late ones, which are all taken of one epoch, the oldest."""
+    if isinstance(reading, LateNode):
+        return 0, reading.told_t
+    return (1 if isinstance(reading, Node) else 2), 0.0
 
 
 def tick_of(t: float) -> int:

@@ -7,6 +7,7 @@ from operator import itemgetter
 from estimator.fusion import physics
 from estimator.fusion.entering import (
     corrections,
+    late_introductions,
     leaving,
     reentry,
     replaced_unit,
@@ -26,7 +27,7 @@ from estimator.fusion.report import estimate_of
 from estimator.fusion.rows.rows import Single
 from estimator.inertial.samples import AnyFolded, Samples
 from estimator.measurements.displacement import Displacement
-from estimator.measurements.node import Node
+from estimator.measurements.node import LateNode, Node
 from estimator.measurements.position import Position
 from estimator.measurements.retire import Retire
 from estimator.measurements.rssi import Rssi
@@ -60,7 +61,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         elif isinstance(reading, Node) and any(r.node == reading.node and r.t < reading.t for r in retired):
             returned.append(reading)
         elif isinstance(reading, Node):
-            holds += corrections.take(state, reading)
+            holds += _introduced(state, reading)
         elif isinstance(reading, Retire):
             retired.append(reading)
         elif isinstance(reading, Samples):
@@ -89,8 +90,14 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     for gone in retired:
         leaving.retire(state, gone, estimate_of(state, gone.node))
     for reading in returned:
-        corrections.take(state, reading)
+        _introduced(state, reading)
     state.keep_poses()
+
+
+def _introduced(state: FusionState, reading: Node) -> list[Position]:
+    if isinstance(reading, LateNode):
+        return late_introductions.take(state, reading)
+    return corrections.take(state, reading)
 
 
 def _fold(

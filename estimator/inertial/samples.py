@@ -8,6 +8,7 @@ from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.base import Identifier, Reading
 from estimator.measurements.imu import RATE_MIN_HZ, Imu, end_of
+from estimator.measurements.node import LateNode
 
 PIECE_S = 0.5
 
@@ -44,7 +45,7 @@ class Samples(Reading, tag="samples", frozen=True):
         return np.frombuffer(self.values, dtype=np.float64).reshape(self.count, 6)
 
 
-AnyFolded = AnyReading | Samples
+AnyFolded = AnyReading | Samples | LateNode
 
 
 def in_pieces(readings: Iterable[AnyReading]) -> Iterator[AnyFolded]:

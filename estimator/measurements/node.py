@@ -1,8 +1,19 @@
 """`node`: introduces or renames a node."""
 
-from typing import Literal
+from typing import Literal, Self
 
-from estimator.measurements.base import AngleRad, Identifier, Reading, ShortText, SigmaM, SigmaRad, Vector3M
+import msgspec
+
+from estimator.measurements.base import (
+    AngleRad,
+    EpochSeconds,
+    Identifier,
+    Reading,
+    ShortText,
+    SigmaM,
+    SigmaRad,
+    Vector3M,
+)
 
 Role = Literal["base", "anchor", "beacon", "breadcrumb", "responder", "uav"]
 """base: static, known; anchor: static, given with sigma; beacon, breadcrumb: static, unknown; others move."""
@@ -34,3 +45,18 @@ class Node(Reading, tag="node", frozen=True):
     heading_rad: AngleRad | None = None
     heading_sigma_rad: SigmaRad | None = None
     device: ShortText | None = None
+
+
+class LateNode(Node, tag="late_node", frozen=True, kw_only=True):
+    """A `node` reading that came too late for its own epoch: `t` is the oldest one that it can be taken of.
+
+    Attributes:
+        told_t: its own epoch, Unix seconds.
+    """
+
+    told_t: EpochSeconds
+
+    @classmethod
+    def of(cls, reading: Node, t: float) -> Self:
+        """A reading, as of an epoch that it can still be taken of, Unix seconds."""
+        return cls(**{**msgspec.structs.asdict(reading), "t": t}, told_t=reading.t)

@@ -16,7 +16,8 @@ class TrackerSettings(msgspec.Struct, frozen=True, kw_only=True):
     """What an incident tells its tracker.
 
     Attributes:
-        lag_s: readings later than this behind the newest epoch are counted, not fused (s).
+        lag_s: readings later than this behind the newest epoch are counted, not fused (s); of introductions
+            what they say of a node for good counts.
         origin_wgs84: latitude (°), longitude (°), height above the ellipsoid (m) of the origin, if known.
     """
 

@@ -1,5 +1,8 @@
 """Late and out-of-order readings: the filter is rolled back to before them and folds again.
 
+Of a reading that comes later than the lag nothing is fused, but what an introduction says of a node for good
+(decision 0104).
+
 The estimates are a function of the set of readings inside the lag, not of the order in which they arrived:
 each tick is folded from the state before it and its own readings in canonical order. Folding happens when
 something is asked for, so many batches cost one pass.
@@ -22,6 +25,7 @@ from estimator.fusion.holding import names_of
 from estimator.fusion.memory.state import FusionState
 from estimator.inertial.samples import AnyFolded, Samples, in_pieces
 from estimator.measurements import AnyReading
+from estimator.measurements.node import LateNode, Node
 from estimator.trackers.catch_up import CatchUp
 from estimator.trackers.chain import Chain, hurried
 
@@ -80,7 +84,7 @@ class Lag:
     Attributes:
         lag_s: readings later than this behind the newest epoch are counted, not fused (s).
         newest_t: newest epoch so far, but none that was still to come; None before the first reading.
-        too_late: readings that came too late.
+        too_late: readings that came too late; of introductions the tracker takes what they say for good.
         received: all readings.
         late: of those that came too late, how many name each node first.
         leaps: the newest leaps of the newest epoch.
@@ -139,7 +143,7 @@ class Lag:
         return record, [state for _, state in (*sure, *shown)]
 
     def add(self, readings: Sequence[AnyReading], known_t: float = math.inf) -> None:
-        """Take readings in; those beyond the lag are counted and noticed.
+        """Take readings in; of those beyond the lag introductions are late, others are counted and noticed.
 
         Args:
             readings: in any order of epochs.
@@ -157,7 +161,9 @@ class Lag:
                 together.append(reading)
                 continue
             if self.newest_t is not None and until_t < self.newest_t - self.lag_s:
-                if not isinstance(reading, Samples) or reading.last:
+                if isinstance(reading, Node):
+                    self._take_late(reading, self.newest_t)
+                elif not isinstance(reading, Samples) or reading.last:
                     node = names_of(reading)[0]
                     self.too_late += 1
                     self.late[node] = self.late.get(node, 0) + 1
@@ -172,6 +178,13 @@ class Lag:
         for node, newest in missed.items():
             text = _too_late(self.late[node], self.lag_s) + self._why_late(newest.until_t)
             self._loose.append(Notice(code="too_late", t=newest.t, node=node, text=text))
+
+    def _take_late(self, reading: Node, now_t: float) -> None:
+        """Take an introduction that came too late as of the oldest epoch that can still be folded."""
+        late = LateNode.of(reading, now_t - self.lag_s)
+        tick = tick_of(late.t)
+        self._make_room(tick, tick_of(now_t))
+        self._readings[tick].append(late)
 
     def _go_on(self, reading: AnyFolded, known_t: float) -> float:
         """Let the newest epoch be no older than that of a reading (s), note where it leaps, and return it.

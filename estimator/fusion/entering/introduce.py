@@ -39,7 +39,9 @@ def introduce(state: FusionState, reading: Node) -> bool:
     if reading.heading_sigma_rad is not None:
         node = replace(node, heading_sigma_rad=reading.heading_sigma_rad)
     if reading.device is not None:
-        node = replace(node, device=reading.device)
+        node = replace(node, device=reading.device, device_told_t=reading.t)
+    if reading.position_m is not None:
+        node = replace(node, place_told_t=reading.t)
     state.nodes[node.node] = node
     if node.mode == "undecided":
         _place_new(state, node, reading)
@@ -149,7 +151,12 @@ def begin_at_base(state: FusionState, node: NodeState, t: float) -> None:
 
 
 def waits_for_ranges(state: FusionState, node: NodeState, t: float) -> bool:
-    """Whether ranges to known places will soon tell where a node is, and no base says where it entered."""
+    """Whether ranges are to tell where a node is: soon, where no base says where it entered.
+
+    Who has been inside for long is at no base by now, however long they take.
+    """
+    if node.inside:
+        return True
     anchored = any(n.role in ("base", "anchor") and n.decided for n in state.nodes.values())
     based = any(n.mode == "fixed" for n in state.nodes.values())
     return anchored and not based and t - node.t < physics.WAIT_FOR_RANGES_S
@@ -231,7 +238,7 @@ def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float)
         # What was measured to it before was measured to another place, or to a hand that carried it.
         node = replace(node, mode="undecided", index=state.number(name))
     wide = (NO_PRIOR_SIGMA_M,) * 3
-    node = replace(node, otherwise=by.otherwise, unseen_up_m2=by.doubt_up_m2)
+    node = replace(node, otherwise=by.otherwise, unseen_up_m2=by.doubt_up_m2, place_told_t=t)
     place(state, node, t, where_m, wide)
     state.ledger.add("drops", t, node.index, by.index)
     start = state.graph.rows(state.nodes[name].position).start

@@ -29,7 +29,8 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         node: the node.
         role: what it is.
         index: number of its block in the ledger; a node that is moved gets a new one.
-        named: its role was told by a `node` reading, not guessed from the first reading that named it.
+        named: its role was told in time by a `node` reading, not too late, and not guessed from the first
+            reading that named it.
         mode: how its position is held.
         t: epoch of its newest fused reading.
         pose_t: epoch that its position refers to, where it moves.
@@ -70,6 +71,9 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         detours: where it may be instead because its unit's frame may have turned on the way.
         power_cost: what a power that it hears has cost at least since it was last asked in vain whether that
             frame has turned (log likelihood).
+        place_told_t: epoch of what told last where it stands, or that it lies elsewhere now (s).
+        device_told_t: epoch of the `node` reading that told its device (s).
+        inside: it was introduced too late: it has entered long ago, and may be anywhere by now.
         walk_factors: learned variances of its unit over the assumed ones: of displacements, of its heading.
     """
 
@@ -116,6 +120,9 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     placed_t: float = -math.inf
     detours: tuple[Alternative, ...] = ()
     power_cost: float = -math.inf
+    place_told_t: float = -math.inf
+    device_told_t: float = -math.inf
+    inside: bool = False
 
     @property
     def position(self) -> Variable:

@@ -28,7 +28,9 @@ def branch(state: FusionState, moved: MovedNode) -> None:
     pairs = state.ledger.table("pairs")
     state.ledger.replace("pairs", renumber(pairs, node.index, number, moved.since_t))
     state.graph.delete_nodes([node.position])
-    state.nodes[moved.name] = replace(node, mode="undecided", index=number, otherwise=())
+    state.nodes[moved.name] = replace(
+        node, mode="undecided", index=number, otherwise=(), place_told_t=moved.since_t
+    )
     state.sightings[moved.name] = moved.readings
     state.tried.pop(moved.name, None)
     text = f"{moved.name} lies elsewhere than it did: it was kicked or carried"

@@ -74,7 +74,7 @@ def test_who_was_introduced_too_late_is_shown_as_what_he_is(role: Role, then: li
     assert (shown.role, shown.callsign, shown.crew) == (role, "X", "L3")
 
 
-def test_a_responder_whom_the_tracker_takes_for_a_breadcrumb_is_nowhere_rather_than_at_rest() -> None:
+def test_who_is_found_by_ranges_is_found_as_what_was_told_of_him_too_late() -> None:
     places = {"b1": (10.0, 0.0, 0.0), "b2": (0.0, 10.0, 0.0), "b3": (-10.0, -10.0, 0.0)}
     anchors = [Node(t=1000.0, node=name, role="anchor", position_m=at) for name, at in places.items()]
     ranges = [
@@ -82,8 +82,12 @@ def test_a_responder_whom_the_tracker_takes_for_a_breadcrumb_is_nowhere_rather_t
         for s in range(10)
         for name, at in places.items()
     ]
-    assert told_too_late("breadcrumb", *anchors, *ranges).position_m is not None
-    assert told_too_late("responder", *anchors, *ranges).position_m is None
+    roles: tuple[Role, Role] = ("breadcrumb", "responder")
+    for role in roles:
+        shown = told_too_late(role, *anchors, *ranges)
+        assert shown.role == role
+        assert shown.position_m == pytest.approx((3.0, 4.0, 0.0), abs=0.1)
+    assert told_too_late("responder", *anchors, *ranges).speed_mps is not None
 
 
 def test_who_is_introduced_again_in_time_is_what_the_tracker_was_told() -> None:

@@ -93,7 +93,7 @@ def test_whose_clock_made_everybody_elses_readings_late_is_said() -> None:
 
 def test_a_first_reading_astray_is_named_too() -> None:
     tracker = KirchhoffTracker()
-    for reading in (Position(t=4e9, node="uav", position_m=(0.0, 0.0, 9.0)), *walk(0)):
+    for reading in (Position(t=4e9, node="uav", position_m=(0.0, 0.0, 9.0)), step_to(1.0)):
         tracker.fold([reading])
     assert [notice.text.partition(": ")[2] for notice in tracker.take_notices()] == [
         "a reading of uav put time forward to t = 4000000000"
@@ -104,7 +104,7 @@ def test_who_is_right_by_the_clock_of_who_received_it_is_not_blamed_for_what_is_
     tracker = KirchhoffTracker()
     right = Position(t=3600.0, node="uav", position_m=(0.0, 0.0, 9.0))
     tracker.fold([right], 3600.5)
-    tracker.fold(walk(1), 3601.0)
+    tracker.fold([step_to(1.0), step_to(2.0)], 3601.0)
     (notice,) = [notice for notice in tracker.take_notices() if notice.code == "too_late"]
     assert notice.text.endswith("came more than 60 s late and are not fused")
 
@@ -116,4 +116,20 @@ def test_what_is_late_without_anybodys_leap_blames_nobody() -> None:
     tracker.fold([step_to(STEPS - 100.0)])
     assert [notice.text for notice in tracker.take_notices() if notice.code == "too_late"] == [
         "1 reading so far came more than 60 s late and is not fused"
+    ]
+
+
+def test_an_introduction_that_comes_too_late_is_taken_and_what_comes_with_it_is_not() -> None:
+    tracker = KirchhoffTracker()
+    tracker.fold(walk(STEPS))
+    tracker.take_notices()
+    anchor = Node(t=5.0, node="a1", role="anchor", position_m=(9.0, 9.0, 0.0))
+    tracker.fold([anchor, step_to(6.0), Position(t=7.0, node="a1", position_m=(0.0, 0.0, 0.0))])
+    tracker = KirchhoffTracker.restore(tracker.snapshot())
+    assert {e.node: e.position_m for e in tracker.estimates()}["a1"] == (9.0, 9.0, 0.0)
+    assert tracker.counts()["too_late"] == 2
+    assert sorted((notice.code, notice.node) for notice in tracker.take_notices()) == [
+        ("introduced_late", "a1"),
+        ("too_late", "a1"),
+        ("too_late", "ff1"),
     ]
