@@ -116,7 +116,7 @@ def scored_delays(problem: Problem, solved: Solution, told: RangesByRadio) -> li
     if not asked:
         return []
     right = bias_columns(problem, solved, told, np.array(asked))
-    of_keyframes = right[:size].reshape(layout.length, layout.width, -1)
+    of_keyframes = right[:size].reshape(layout.length, layout.width, right.shape[1])
     solved.chain.reduce()
     taken = solved.chain.explained(of_keyframes, right[size:])
     worth, found = _effective_share(problem, solved, told), []

@@ -98,6 +98,6 @@ def explained_count(problem: Problem, solved: Solution, at: Indices, root: Array
     size = layout.length * layout.width
     right = np.zeros((size + layout.border, PROBES))
     probe(right, layout.width, size, rows.columns[at], rows.slab[at], solved.linear.jacobian[at], root)
-    of_keyframes = right[:size].reshape(layout.length, layout.width, -1)
+    of_keyframes = right[:size].reshape(layout.length, layout.width, right.shape[1])
     explained = solved.chain.explained(of_keyframes, right[size:])
     return float(np.trace(explained.information)) / PROBES

@@ -54,8 +54,9 @@ def suspects(
     size = layout.length * layout.width
     right = bias_columns(problem, solved, told, np.array([number[radio] for radio in off_m2]))
     right = right[:, ::2] + right[:, 1::2]
-    moved, fixed = solved.chain.response(right[:size].reshape(layout.length, layout.width, -1), right[size:])
-    moved = moved.reshape(size, -1)
+    of_keyframes = right[:size].reshape(layout.length, layout.width, right.shape[1])
+    moved, fixed = solved.chain.response(of_keyframes, right[size:])
+    moved = moved.reshape(size, right.shape[1])
     for i, (radio, square) in enumerate(off_m2.items()):
         yield Suspect(radio, square, -np.concatenate([moved[:, i], fixed[:, i]]))
 

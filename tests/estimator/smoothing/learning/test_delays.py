@@ -105,3 +105,25 @@ def test_the_halves_of_the_time_are_those_of_epochs_whatever_the_order_of_the_le
     late = told_of.half[np.arange(len(t)), end] == 1
     assert late.any()
     assert t[~late].max() <= t[late].min()
+
+
+def test_a_breadcrumb_that_only_anchors_range_may_have_a_delay() -> None:
+    """Nobody moves: a window has no walks, and is asked all the same."""
+    chance = np.random.default_rng(1)
+    corners = {"a0": (0.0, 0.0), "a1": (20.0, 0.0), "a2": (0.0, 20.0), "a3": (20.0, 20.0), "a4": (10.0, -8.0)}
+    readings: list[AnyReading] = [
+        Node(t=0.0, node=name, role="anchor", position_m=(*place, 0.0), sigma_m=0.1)
+        for name, place in corners.items()
+    ]
+    readings.append(Node(t=0.0, node="b1", role="breadcrumb", position_m=(8.0, 6.0, 0.0), sigma_m=1.0))
+    for second in range(SECONDS):
+        for k, (name, place) in enumerate(corners.items()):
+            range_m = math.dist((8.0, 6.0), place) + 2.0 + float(chance.normal(0.0, SIGMA_M))
+            readings.append(Range(t=second + 0.1 * k, a="b1", b=name, range_m=range_m, technology="uwb"))
+    problem = problem_of(fused(readings), 0.0)
+    assert not problem.layout.walks
+    solved = problem.solve(problem.layout.start(), METRES_OFF)
+    solved.chain.solve()
+    (first, *_) = delays(problem, solved)
+    assert first.radio == ("uwb", "b1")
+    assert first.bias_m == pytest.approx(2.0, abs=0.1)
