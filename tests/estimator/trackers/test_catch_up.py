@@ -41,9 +41,9 @@ def test_a_gateway_that_is_always_behind_has_the_window_solved_a_few_times_a_sec
 ) -> None:
     solved: list[float] = []
 
-    def counted(state: FusionState, solved_t: float) -> bool:
+    def counted(state: FusionState, solved_t: float, bent: bool = False) -> bool:
         solved.append(state.newest_t)
-        return refresh(state, solved_t)
+        return refresh(state, solved_t, bent)
 
     monkeypatch.setattr("estimator.smoothing.window.refresh", counted)
     tracker, before = KirchhoffTracker(), 0
