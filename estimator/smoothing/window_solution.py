@@ -82,10 +82,7 @@ def _likeliest(
     """The likeliest solution, with climbs, turned frames, mountings and images tried; others by mountings."""
     build = partial(_problem, since=since)
     problem = build(state)
-    solved = _solved(problem, problem.layout.start(), solved_t)
-    if bent:
-        straight = problem.solve(solved.x, METRES_OFF, len(METRES_OFF) + ITERATIONS, RESTING)
-        solved = min(solved, straight, key=lambda found: found.cost)
+    solved = _solved(problem, problem.layout.start(), solved_t, bent)
     if hinted(problem, solved):
         problem, solved = find_unseen_climb(problem, solved, build, RESTING)
     problem, solved = turned_frames(problem, solved, build, RESTING)
@@ -100,29 +97,34 @@ def _problem(state: FusionState, since: float) -> Problem:
     return Problem(layout, rows, state.prior)
 
 
-def _solved(problem: Problem, x: Array, solved_t: float) -> Solution:
-    """The likelier solution of two starts: the filter's estimate, and the units' dead reckoning.
+def _solved(problem: Problem, x: Array, solved_t: float, bent: bool) -> Solution:
+    """The likeliest solution of some starts: the filter's estimate, and the units' dead reckoning.
 
     The filter may have turned the map, of which what was solved before knows nothing: the kink between the
     two can bend everything, and turn the map further with each solution.
 
     A reading that has led the filter far away lies between keyframes that know nothing of it and those that
-    do: it is held against a start that is as unsure as that, or it would be an outlier for ever.
+    do: it is held against a start that is as unsure as that, or it would be an outlier for ever. So is what
+    was bent by readings of a node that turned out to lie elsewhere.
 
     Args:
         problem: of the window.
         x: where the filter has led to, flat.
         solved_t: when the window was last solved (s).
+        bent: see `refresh`.
     """
     free = any(walk.way is None for walk in problem.layout.walks)
     slacks = SLACKS_M if free else ()
     kinked = problem.going.kinked(x, physics.TICK_S)
     solved = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING, kinked)
     reckoned = problem.going.reckoned(x, solved_t)
-    if problem.at(reckoned).cost >= solved.cost:
-        return solved
-    other = problem.solve(reckoned, slacks, len(slacks) + ITERATIONS, RESTING)
-    return min(solved, other, key=lambda found: found.cost)
+    if problem.at(reckoned).cost < solved.cost:
+        other = problem.solve(reckoned, slacks, len(slacks) + ITERATIONS, RESTING)
+        solved = min(solved, other, key=lambda found: found.cost)
+    if bent:
+        straight = problem.solve(solved.x, METRES_OFF, len(METRES_OFF) + ITERATIONS, RESTING)
+        solved = min(solved, straight, key=lambda found: found.cost)
+    return solved
 
 
 def _hand_back(state: FusionState, judged: JudgedImages, mountings: Sequence[Mode]) -> None:

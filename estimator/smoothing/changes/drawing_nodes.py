@@ -14,14 +14,14 @@ from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.nodes import NodeState
 from estimator.graph.chain_kernels import Integers
 from estimator.smoothing.changes.masked_outliers import place_without
-from estimator.smoothing.changes.relocation import READINGS_MIN, MovedNode, changed_t
+from estimator.smoothing.changes.relocation import NEW_S, READINGS_MIN, MovedNode, changed_t, may_be_kicked
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 
 SILENCE_S = 30.0
 """A breadcrumb that nobody ranges for so long may be kicked meanwhile."""
-RECENT_S, NEW_S = 60.0, 30.0
-"""How long ago the silence may have ended, and its newest range been made."""
+RECENT_S = 60.0
+"""How long ago the silence may have ended."""
 
 
 def drawing_nodes(
@@ -86,11 +86,6 @@ def heard_anew(problem: Problem, doubted: Integers, now: float) -> dict[str, Int
         if len(np.unique(np.floor(pairs[theirs, 0]))) >= READINGS_MIN:
             found[node.node] = since
     return found
-
-
-def may_be_kicked(node: NodeState) -> bool:
-    """Whether a node lies somewhere, and is not fixed there."""
-    return node.mode == "static" and node.role != "anchor"
 
 
 def _unmoved_t(problem: Problem, node: NodeState) -> float:

@@ -94,6 +94,7 @@ def _without(
         return None
     before = _cost(here, here.residual, sigma) + relief
     after = _cost(there, there.residual_at(modes[0].position_m), sigma)
+    # How surely they tell where is no matter: that they fit elsewhere is told by all readings together.
     place = clear_place(there, modes[0], before, after)
     return None if place is None else MaskedOutliers(place, alone, relief)
 

@@ -4,6 +4,7 @@ A breadcrumb may be kicked or carried: from some epoch on its readings disagree 
 another one.
 """
 
+from collections.abc import Sequence
 from copy import copy
 from typing import NamedTuple
 
@@ -15,10 +16,11 @@ from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.graph.robust import cauchy_cost
-from estimator.smoothing.changes.drawing_nodes import drawing_nodes, may_be_kicked
+from estimator.smoothing.changes.drawing_nodes import drawing_nodes
 from estimator.smoothing.changes.masked_outliers import masked_place
 from estimator.smoothing.changes.relocation import (
     GAIN,
+    NEW_S,
     READINGS_MIN,
     USUAL_COST,
     MovedNode,
@@ -26,6 +28,7 @@ from estimator.smoothing.changes.relocation import (
     best_place,
     changed_t,
     contradicted,
+    may_be_kicked,
 )
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
@@ -37,7 +40,7 @@ together, and one kind alone raises a suspicion, unless all others gain without 
 RECENT_S = 120.0
 SUSPICION = 6.0
 """How much worse than usual, in log likelihood, readings are together before another place is looked for."""
-DOUBT, NEW_S = 1.5, 30.0
+DOUBT = 1.5
 """The same of the newest readings before a window is solved again soon."""
 LATEST = 3
 """So many later beginnings of a disagreement are looked at as well."""
@@ -113,17 +116,20 @@ def moved_nodes(
     if not solved.rests:
         return [moved for _, moved in found.values()], suspected
     drawing = drawing_nodes(whole, solved, doubted, now)
-    if not drawing:
-        # One that lies elsewhere makes its neighbours seem to, but less far: they are asked again without it.
-        farthest = max(found.values(), key=lambda one: one[0].far_m, default=None)
-        return [] if farthest is None else [farthest[1]], suspected or len(found) > 1
-    for name in doubted.keys() & found.keys():
-        place, moved = found[name]
-        drawing[name] = max(drawing.get(name, (0.0, moved)), (place.gain, moved))
-    (gain, moved), *others = sorted(drawing.values(), reverse=True)
-    # Of two that explain the same equally well it is not known which one it is.
-    clear = not others or gain > others[0][0] + CLEARER
-    return [moved] if clear else [], True
+    if drawing:
+        for name in doubted.keys() & found.keys():
+            place, moved = found[name]
+            drawing[name] = max(drawing.get(name, (0.0, moved)), (place.gain, moved))
+        return _likeliest(list(drawing.values())), True
+    # One that lies elsewhere makes its neighbours seem to, but less far: they are asked again without it.
+    farthest = max(found.values(), key=lambda one: one[0].far_m, default=None)
+    return [] if farthest is None else [farthest[1]], suspected or len(found) > 1
+
+
+def _likeliest(drawing: Sequence[tuple[float, MovedNode]]) -> list[MovedNode]:
+    """The one with which elsewhere all gain most; of two that explain the same as well it is not known."""
+    (gain, moved), *others = sorted(drawing, reverse=True)
+    return [moved] if not others or gain > others[0][0] + CLEARER else []
 
 
 def _since(pairs: Array, number: int, mine: Integers) -> Integers:

@@ -18,6 +18,8 @@ USUAL_COST = 1.0
 GAIN = 10.0
 """How much better the other place must explain them: odds of 1 to 20,000 for one more place."""
 FAR_M = 1.5
+NEW_S = 30.0
+"""Readings no older than this are new (s)."""
 UNSURE_M = 0.3
 UP_SIGMA_M = 1.0
 
@@ -34,6 +36,11 @@ class MovedNode(NamedTuple):
     name: str
     since_t: float
     readings: int
+
+
+def may_be_kicked(node: NodeState) -> bool:
+    """Whether a node lies somewhere, and is not fixed there."""
+    return node.mode == "static" and node.role != "anchor"
 
 
 class NodeReadings(NamedTuple):
