@@ -1,7 +1,7 @@
-"""A unit that is worn the wrong way round: what it reports is mirrored, or turned by a right angle.
+"""A unit that is worn the wrong way round: what it reports is mirrored, or turned by some angle.
 
 Whose box is upside down on his boot goes to the left where he goes to the right, and its gyro turns the other
-way; whose box is turned on it, or whose two axes are exchanged, goes where he does not look.
+way; whose box is turned on it, or faced elsewhere at first than was told, goes where he does not look.
 """
 
 import math
@@ -10,10 +10,12 @@ from typing import NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
+from estimator.fusion.entering.introduce import turn_sigma
 from estimator.fusion.images import Image
 from estimator.fusion.memory.ledger import GYRO_BIAS
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
+from estimator.inertial.levelling import ANYWHERE_RAD
 from estimator.measurements.bearing import within_pi
 from estimator.measurements.displacement import Displacement
 
@@ -76,6 +78,8 @@ def reported(node: NodeState, reading: Displacement) -> Displacement:
 def mount(state: FusionState, number: int, worn: Mounting) -> None:
     """Take a unit to be worn so from its beginning, in all that it has reported.
 
+    What was told of where a turned one faced at first says nothing: it may have been told wrongly as well.
+
     Args:
         state: the fusion, changed in place: the ledger, not the Kirchhoff state.
         number: of the node.
@@ -83,6 +87,10 @@ def mount(state: FusionState, number: int, worn: Mounting) -> None:
     """
     node = state.life(number)
     change = worn.after(mounting_of(node).back())
+    begins = state.ledger.table("begins").copy()
+    begun = (begins[:, 1] == number) & (begins[:, 2] == 1.0)
+    begins[begun, 11] = turn_sigma(node) if worn.turned_rad == 0.0 else ANYWHERE_RAD
+    state.ledger.replace("begins", begins)
     steps = state.ledger.table("steps").copy()
     mine = steps[:, 1] == number
     steps[mine, 3:5] = change.image.of(steps[mine, 3:5])

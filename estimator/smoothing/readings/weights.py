@@ -26,8 +26,18 @@ def weigh_readings(rows: Rows, residual: Array, slack_m: float, doubt: Array | N
     sigma = rows.sigma
     unsure = np.zeros(len(residual)) if doubt is None else doubt
     if slack_m > 0.0:
-        slack = np.where(rows.turns, 0.0, slack_m)
-        slack[: len(rows.pairs)][rows.pairs[:, 1] == RSSI] *= SLACK_DB_PER_M
-        sigma = np.hypot(sigma, slack)
+        sigma = loosened(rows, slack_m)
         unsure = np.where(rows.turns, physics.BIAS_SIGMA_MOST_RADPS**2, unsure)
     return weigh(residual, sigma, unsure, *rows.noise.T)
+
+
+def loosened(rows: Rows, slack_m: float) -> Array:
+    """Standard deviation of each reading's good noise where places may be off, m.
+
+    Args:
+        rows: the readings.
+        slack_m: how far off (m).
+    """
+    slack = np.where(rows.turns, 0.0, slack_m)
+    slack[: len(rows.pairs)][rows.pairs[:, 1] == RSSI] *= SLACK_DB_PER_M
+    return np.asarray(np.hypot(rows.sigma, slack))

@@ -7,16 +7,20 @@ from typing import NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
+from estimator.fusion.entering.introduce import turn_sigma
 from estimator.fusion.entering.unit_mounting import RIGHT, Mounting, mount, mounting_of
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
+from estimator.inertial.levelling import ANYWHERE_RAD
 from estimator.measurements.bearing import within_pi
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.units.turned_starts import as_turned, same_turn, turned_starts
 
-RARE = math.log(0.01 / 4.0)
-"""Log odds that a unit is worn one of four wrong ways: all of them together one of a hundred is."""
-WRONG = (Mounting(True), *(Mounting(False, k * 0.5 * math.pi) for k in (1, 2, 3)))
+MIRRORED_RARE, TURNED_RARE = math.log(0.0025), math.log(0.0075)
+"""Log odds that a unit is mirrored, and that it is turned: one of a hundred is worn wrongly."""
+MIRRORED, TURNED = Mounting(True), Mounting(False, math.pi)
+"""Wrong ways. How far a unit is turned is found: half round, none of them is as it was told."""
 SLACKS_M = (3.0, 0.5, 0.1)
 ITERATIONS = 8
 HOPELESS = 60.0
@@ -60,8 +64,8 @@ def hypotheses(
     wrong = [number for number in numbers if mounting_of(state.life(number)) != RIGHT]
     tried: list[dict[int, Mounting]] = [{}, *({number: RIGHT} for number in wrong)]
     for number in numbers:
-        for way in WRONG:
-            if mounting_of(state.life(number)) == way or rather_faces(state, number, way):
+        for way in (MIRRORED, TURNED):
+            if mounting_of(state.life(number)) == way == MIRRORED:
                 continue
             tried.append({number: way})
             tried += [{other: RIGHT, number: way} for other in wrong if other != number]
@@ -71,9 +75,12 @@ def hypotheses(
         for number, way in each.items():
             mount(other, number, way)
         trial = build(other)
-        odd = sum(mounting_of(other.life(number)) != RIGHT for number in numbers)
-        most = math.inf if not found else found[0].cost + RARE * odd
+        odds = _odds(other, numbers)
+        most = math.inf if not found else found[0].cost + odds
+        turned = next((number for number, way in each.items() if way == TURNED), None)
         starts = [_reckoned(trial, x, each), *([_reckoned(trial, x)] if anew else [])]
+        if turned is not None:
+            starts = [way for start in starts for way in turned_starts(trial, start, turned)]
         ways = [_led(trial, start, most, resting) for start in starts]
         if not each:
             # As it is: how far off a start may be that is none may lead it away.
@@ -81,17 +88,38 @@ def hypotheses(
         solved = min((way for way in ways if way is not None), key=lambda way: way.cost, default=None)
         if solved is None and not found:
             break
-        if solved is not None:
-            found.append(MountingHypothesis(tuple(each.items()), solved.x, solved.cost - RARE * odd))
+        if solved is None:
+            continue
+        if turned is None:
+            found.append(MountingHypothesis(tuple(each.items()), solved.x, solved.cost - odds))
+            continue
+        way, led = as_turned(trial, solved.x, turned)
+        told = (RIGHT, mounting_of(state.life(turned)))
+        if not any(same_turn(way, one) for one in told) and not rather_faces(state, turned, way):
+            worn = (each | {turned: way}).items()
+            found.append(MountingHypothesis(tuple(worn), led, solved.cost - odds))
     best = min(found, key=lambda guess: guess.cost, default=None)
     if best is not None and best is not found[0]:
         # What was found along with it, as it is: that others lie better elsewhere speaks against no unit.
         trial = build(plain)
         again = _led(trial, _reckoned(trial, best.x, dict(best.worn)), math.inf, resting)
-        odd = sum(mounting_of(plain.life(number)) != RIGHT for number in numbers)
-        if again is not None and again.cost - RARE * odd < found[0].cost:
-            found[0] = MountingHypothesis((), again.x, again.cost - RARE * odd)
+        odds = _odds(plain, numbers)
+        if again is not None and again.cost - odds < found[0].cost:
+            found[0] = MountingHypothesis((), again.x, again.cost - odds)
     return found
+
+
+def _odds(state: FusionState, numbers: Sequence[int]) -> float:
+    """Log odds beforehand of how some units are worn."""
+    total = 0.0
+    for number in numbers:
+        node = state.life(number)
+        worn = mounting_of(node)
+        total += MIRRORED_RARE if worn.mirrored else 0.0
+        if worn.turned_rad != 0.0:
+            # What it faces may be anything: each angle is as much rarer as that is wider than what was told.
+            total += TURNED_RARE - math.log(ANYWHERE_RAD / turn_sigma(node))
+    return total
 
 
 def _led(problem: Problem, x: Array, known: float, resting: float) -> Solution | None:
@@ -119,7 +147,7 @@ def _rested(problem: Problem, x: Array, resting: float) -> Solution | None:
 
 
 def rather_faces(state: FusionState, number: int, way: Mounting) -> bool:
-    """Whether a unit that seems to be worn turned rather faces another way than was told.
+    """Whether a unit that seems to be turned rather faces as it was told, as loosely as that was.
 
     What it faces and how it is turned on its boot are one angle. Where nobody has told what it faces, another
     heading explains all that a turn does, and is not as rare: those are asked about as images of its way.
@@ -129,9 +157,8 @@ def rather_faces(state: FusionState, number: int, way: Mounting) -> bool:
         number: of the node.
         way: how the unit may be worn.
     """
-    begins = state.ledger.table("begins")
-    sigma_rad = float(begins[(begins[:, 1] == number) & (begins[:, 2] == 1.0)][-1, 11])
-    return not way.mirrored and 0.5 * (within_pi(way.turned_rad) / sigma_rad) ** 2 < -RARE
+    sigma_rad = turn_sigma(state.life(number))
+    return not way.mirrored and 0.5 * (within_pi(way.turned_rad) / sigma_rad) ** 2 < -TURNED_RARE
 
 
 def unlearned(state: FusionState) -> FusionState:

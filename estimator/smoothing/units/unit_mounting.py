@@ -1,4 +1,4 @@
-"""Whose unit is worn the wrong way round: mirrored, or turned by a right angle.
+"""Whose unit is worn the wrong way round: mirrored, or turned, or faced elsewhere than was told.
 
 A unit that is mirrored leads its bearer along a mirrored way, and what he drops lies there: a world that is
 as consistent as the true one, until something off its axis contradicts it; and then somebody else's good unit
@@ -7,31 +7,36 @@ window is also solved with what each of them reports the other way round.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from estimator.fusion.entering.unit_mounting import RIGHT, mount, mounting_of
+from estimator.fusion.entering.unit_mounting import RIGHT, Mounting, mount, mounting_of
 from estimator.fusion.images import ALWAYS, Image
 from estimator.fusion.learned.rival import DOUBTED, LED_ASTRAY
 from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
+from estimator.measurements.bearing import within_pi
 from estimator.smoothing.images.alternatives import Mode
 from estimator.smoothing.images.earlier_images import LEAST
+from estimator.smoothing.images.heading_images import reports_from
 from estimator.smoothing.keyframes.layout import Layout, Walk
-from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.keyframes.walks import HEADING, STATES
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.units.mounting_hypotheses import SLACKS_M, MountingHypothesis, hypotheses
 
 CLEARER, OPEN = 20.0, 2.0
 """A unit is taken to be worn another way where that is likelier by this much (log odds): a window that was
-bent otherwise has made 18 of none. Where it is open, by this much. Powers share their errors, and have made
-32 of none: by them alone it is open, and no more."""
+bent otherwise has made 18 of none. Where one is, another way is taken by less. From that on it is open:
+another way is told along, at most as likely as what is shown. Powers share their errors, and have made 32 of
+none: by them alone it is open, and no more."""
+BENT = 2.5
+"""A heading that a solution has so many sigmas off from what was told of it speaks against what was told."""
 GONE_M = 5.0
 """Who has gone less has hardly told how his unit is worn."""
 MOST, SOME = 4, 3
@@ -64,23 +69,27 @@ def likeliest_mounting(
         The window, its solution, and its others.
     """
     state, layout = problem.layout.state, problem.layout
-    asked = asked_of(problem, asked_t)
+    bent = bent_headings(layout, solved.x)
+    asked = asked_of(problem, asked_t, bent)
     numbers = [layout.walks[i].number for i in asked]
-    found = hypotheses(state, numbers, solved.x, build, resting, _speak(state)) if asked else []
+    anew = bool(bent) or _speak(state)
+    found = hypotheses(state, numbers, solved.x, build, resting, anew) if asked else []
     if not found:
         return problem, solved, _kept(layout, solved.x)
     known = found[0]
     best = min(found, key=lambda guess: guess.cost)
-    # As long as all units seem to be worn the right way, nothing of this is told.
-    told = any(mounting_of(state.life(number)) != RIGHT or _is_open(state.life(number)) for number in numbers)
-    if best.cost > known.cost - (OPEN if told else CLEARER):
-        best = known
-    if best is known and not told:
+    worn = any(mounting_of(state.life(number)) != RIGHT for number in numbers)
+    told = worn or any(_is_open(state.life(number)) for number in numbers)
+    gain = known.cost - best.cost
+    if gain < OPEN and not told:
+        # As long as all units seem to be worn the right way, nothing of this is told.
         return problem, solved, _kept(layout, solved.x)
-    if not all(_ranged(problem, number) for number, _ in best.worn):
-        # Powers alone may say that it is open, and no more.
-        found = [guess._replace(cost=max(guess.cost, known.cost)) for guess in found]
+    ranged = all(_ranged(problem, number) for number, _ in best.worn)
+    if not ranged or gain < (OPEN if worn else CLEARER):
+        if not ranged or not worn:
+            found = [guess._replace(cost=max(guess.cost, known.cost)) for guess in found]
         best = known = found[0]
+    now = {number: mounting_of(state.life(number)) for number in numbers}
     less = np.array([best.cost - guess.cost for guess in found])
     share = np.exp(less - less.max())
     share /= share.sum()
@@ -89,7 +98,7 @@ def likeliest_mounting(
         problem = build(state)
         solved = problem.solve(best.x, SLACKS_M[1:], resting=resting)
     modes = [
-        _mode(guess, best, each)
+        _mode(guess, best, now, each)
         for guess, each in zip(found, share.tolist(), strict=True)
         if guess is not best and each > LEAST
     ]
@@ -98,7 +107,25 @@ def likeliest_mounting(
     return problem, solved, modes
 
 
-def asked_of(problem: Problem, asked_t: float | None) -> list[int]:
+def bent_headings(layout: Layout, x: Array) -> dict[int, float]:
+    """Units that a solution has face elsewhere at first than was told, by number: by how many sigmas.
+
+    Args:
+        layout: of a window.
+        x: its solution, flat.
+    """
+    begins, found = layout.state.ledger.table("begins"), dict[int, float]()
+    for i, walk in enumerate(layout.walks):
+        if walk.way is not None and walk.begins:
+            told_rad, sigma_rad = begins[(begins[:, 1] == walk.number) & (begins[:, 2] == 1.0)][-1, 10:12]
+            faced_rad = layout.states(x, i)[reports_from(layout, i), HEADING]
+            sigmas = abs(within_pi(float(faced_rad - told_rad))) / float(sigma_rad)
+            if sigmas > BENT:
+                found[walk.number] = sigmas
+    return found
+
+
+def asked_of(problem: Problem, asked_t: float | None, bent: Mapping[int, float]) -> list[int]:
     """Walks of whose units it is asked how they are worn, by index.
 
     It is asked by the clock, again when the window has become longer. Those are asked about first against
@@ -107,10 +134,12 @@ def asked_of(problem: Problem, asked_t: float | None) -> list[int]:
     Args:
         problem: of a window.
         asked_t: when it was last solved (s); None: it is asked only where anything speaks against a unit.
+        bent: see `bent_headings`.
     """
     layout = problem.layout
     state, known = layout.state, () if problem.prior is None else problem.prior.keys
-    speaks, hinted = _speak(state), _speak(state, HINTED)
+    speaks = bool(bent) or _speak(state)
+    hinted = speaks or _speak(state, HINTED)
     length_s = state.newest_t - float(layout.grid[0])
     if asked_t is None:
         due = speaks
@@ -130,7 +159,7 @@ def asked_of(problem: Problem, asked_t: float | None) -> list[int]:
     # Of those against whom nothing speaks, others each time.
     first = int(state.newest_t) % max(len(found), 1)
     found = found[first:] + found[:first]
-    found.sort(key=lambda i: -_odds(layout.walks[i].node))
+    found.sort(key=lambda i: (-bent.get(layout.walks[i].number, 0.0), -_odds(layout.walks[i].node)))
     return found[: MOST if speaks else SOME]
 
 
@@ -196,26 +225,42 @@ def _take(state: FusionState, guess: MountingHypothesis) -> None:
             state.keep(replace(node, walk_factors=(1.0, 1.0), rival=None))
 
 
-def _mode(guess: MountingHypothesis, best: MountingHypothesis, share: float) -> Mode:
-    """Another guess as another solution of the window."""
+def _mode(
+    guess: MountingHypothesis, best: MountingHypothesis, now: Mapping[int, Mounting], share: float
+) -> Mode:
+    """Another guess as another solution of the window: who wears a unit otherwise in it goes on otherwise.
+
+    Args:
+        guess: the other one.
+        best: that which is shown.
+        now: how each unit was taken to be worn before.
+        share: how likely the other one is.
+    """
     number, way = (*guess.worn, *best.worn)[0]
-    return Mode(number, share, guess.x, ALWAYS, way.image, {})
+    there, here = dict(guess.worn), dict(best.worn)
+    images = {
+        n: there.get(n, now[n]).after(here.get(n, now[n]).back()).image for n in sorted({*there, *here})
+    }
+    return Mode(number, share, guess.x, ALWAYS, way.image, images)
 
 
 def _kept(layout: Layout, x: Array) -> list[Mode]:
-    """What was open when it was asked last, where it is not asked now: as far off as then."""
+    """What was open when it was asked last, where it is not asked now: who goes on otherwise has done so."""
     size, now = layout.length * layout.width, (layout.length - 1) * layout.width
     at = {walk.number: now + STATES * i for i, walk in enumerate(layout.walks)}
     at |= {number: size + start for number, start in layout.stands.items()}
-    found: dict[tuple[int, float, Image], Mode] = {}
+    found: dict[tuple[int, float, Image], tuple[Mode, dict[int, Image]]] = {}
     for node in layout.state.nodes.values():
         for other in node.otherwise if node.index in at else ():
             if other.by_unit:
-                mode = Mode(other.of, other.share, x.copy(), ALWAYS, other.way, {})
-                mode = found.setdefault(other.mode, mode)
+                images = dict[int, Image]()
+                mode = Mode(other.of, other.share, x.copy(), ALWAYS, other.way, images)
+                mode, images = found.setdefault(other.mode, (mode, images))
                 own = slice(at[node.index], at[node.index] + 2)
                 mode.x[own] = other.image.of(x[own])
-    return list(found.values())
+                if other.image.matrix[0, 0] < 1.0:
+                    images[node.index] = other.image
+    return [mode for mode, _ in found.values()]
 
 
 def _tell(state: FusionState) -> None:
@@ -224,5 +269,7 @@ def _tell(state: FusionState) -> None:
         way = mounting_of(node)
         if way != RIGHT:
             how = "mirrored" if way.mirrored else f"turned by {round(math.degrees(way.turned_rad)) % 360}°"
-            text = f"the unit of {node.node} seems to be worn the wrong way round: what it reports is {how}"
+            why = "" if way.mirrored else ", or faced elsewhere at first than was told"
+            seems = f"the unit of {node.node} seems to be worn the wrong way round{why}"
+            text = f"{seems}: what it reports is {how}"
             state.say("conflict", state.newest_t, node.node, text, once=f"{node.node} worn {how}")

@@ -10,6 +10,7 @@ from estimator.fusion.entering.unit_mounting import RIGHT, Mounting, mount, moun
 from estimator.fusion.memory.ledger import GYRO_BIAS
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
+from estimator.inertial.levelling import ANYWHERE_RAD
 from estimator.measurements.displacement import Displacement
 
 WAYS = [Mounting(True), Mounting(False, 0.5 * math.pi), Mounting(True, 1.0), Mounting(False, -2.0)]
@@ -53,3 +54,14 @@ def test_what_a_unit_has_reported_is_worn_so_from_its_beginning_and_taken_back()
     mount(state, node.index, RIGHT)
     assert state.ledger.table("steps")[:, 3:5].tolist() == [[3.0, 1.0], [3.0, 1.0]]
     assert mounting_of(state.nodes["ff1"]) == RIGHT
+
+
+def test_what_was_told_of_a_turned_units_heading_says_nothing_and_is_believed_again_with_it() -> None:
+    state = FusionState()
+    node = replace(state.node_of("ff1", "responder", 0.0), heading_sigma_rad=0.05)
+    state.nodes["ff1"] = node
+    state.ledger.add("begins", 0.0, node.index, 1.0, 0.0, *(0.0,) * 6, 0.0, 0.05)
+    mount(state, node.index, Mounting(False, 1.0))
+    assert state.ledger.table("begins")[0, 11] == ANYWHERE_RAD
+    mount(state, node.index, RIGHT)
+    assert state.ledger.table("begins")[0, 11] == 0.05

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from estimator.fusion.entering.unit_mounting import RIGHT, Mounting
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
-from estimator.smoothing.units.mounting_hypotheses import RARE, rather_faces
+from estimator.smoothing.units.mounting_hypotheses import TURNED_RARE, rather_faces
 from tests.estimator.smoothing.images.test_flip_ambiguity import solved_of
 from tests.estimator.trackers.test_unit_mounting import entry
 
@@ -36,7 +36,7 @@ def test_a_unit_of_which_nobody_told_what_it_faces_faces_elsewhere_rather_than_i
 
 
 def test_how_far_off_a_heading_may_be_is_held_against_how_rarely_a_unit_is_worn_wrongly() -> None:
-    sigma_rad = 0.5 * math.pi / math.sqrt(-2.0 * RARE)
+    sigma_rad = 0.5 * math.pi / math.sqrt(-2.0 * TURNED_RARE)
     for way in (QUARTER, THREE_QUARTERS):
         assert rather_faces_so(1.01 * sigma_rad, way)
         assert not rather_faces_so(0.99 * sigma_rad, way)
