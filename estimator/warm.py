@@ -105,12 +105,11 @@ def warm_up() -> None:
     predict_bearing(place, place, one)
     wrap(one)
     for noise in (strided, strided.copy()):
+        # Of one reading alone the columns of a table lie as those of an array do.
         weigh(one, one, one, *noise)
         mixture_cost(one, one, *noise)
     cauchy_cost(one, 1.0)
-    for noise in (strided, strided.copy()):
-        # Of one reading alone the columns of a table lie as those of an array do.
-        total_cost(np.zeros(0, dtype=np.int64), one, one, *noise)
+    total_cost(np.zeros(0, dtype=np.int64), one)
     prior_cost(one, np.zeros(1, dtype=np.intp), one, one)
     find_modes(UndecidedNode("range", place, one, one, 0.0, 1.0, np.zeros(2), np.eye(2)))
 
@@ -161,9 +160,9 @@ def _warm_chain() -> None:
     ahead(heard, slab, ground, no, states, place)
     rows = found.rows
     readings = Readings(slab, one, one, triple, one, end, end, slab, one, pair, one, end, end, end, slab)
-    residuals(readings, x)
-    jacobian = np.zeros((5, ANY))
-    jacobians(readings, x, jacobian)
+    jacobian, numbers = np.zeros((5, ANY)), faced(x, slab)
+    residuals(readings, numbers, 0, 5, np.zeros(5))
+    jacobians(readings, numbers, 0, 5, jacobian)
     add_reckoning_noise(jacobian, place, place, place, place, np.ones(5))
     separations(readings, x)
     scale_sigmas(readings, x, no, True, no, one, one, one)

@@ -55,7 +55,7 @@ def likelier(least: float, cost: float) -> float:
     return 0.0 if cost - least > NEGLIGIBLE else float(np.exp(min(least - cost, 0.0)))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def weigh(
     residual: Array, sigma: Array, predicted: Array, outliers: Array, shift: Array, spread: Array
 ) -> Weighted:
@@ -96,7 +96,7 @@ def weigh(
     return Weighted(information, pulled, good)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def mixture_cost(residual: Array, sigma: Array, outliers: Array, shift: Array, spread: Array) -> Array:
     """Negative log likelihood of each reading up to a constant: what `weigh` descends, m.
 
@@ -121,12 +121,9 @@ def mixture_cost(residual: Array, sigma: Array, outliers: Array, shift: Array, s
     return cost
 
 
-@njit(cache=True, error_model="numpy")
-def total_cost(
-    left_out: Indices, residual: Array, sigma: Array, outliers: Array, shift: Array, spread: Array
-) -> float:
-    """The sum of `mixture_cost`, but for those readings that are left out."""
-    cost = mixture_cost(residual, sigma, outliers, shift, spread)
+@njit(cache=True)
+def total_cost(left_out: Indices, cost: Array) -> float:
+    """The sum of what readings cost, but for those that are left out, whose cost becomes nil."""
     for i in left_out:
         cost[i] = 0.0
     return float(cost.sum())

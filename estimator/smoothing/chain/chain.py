@@ -16,8 +16,8 @@ import numpy as np
 
 from estimator.graph.assembly import add_part
 from estimator.graph.dense import Array, factorise, inverse, log_determinant, mended, solve
+from estimator.graph.parallel import in_parallel
 from estimator.smoothing.chain.groups import Group
-from estimator.smoothing.chain.parallel import in_parallel
 from estimator.smoothing.chain.strand import Strand, strands_of
 
 NOTHING = factorise(np.zeros((0, 0)))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from estimator.fusion.memory.prior import Prior
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array, Indices
-from estimator.graph.robust import Weighted, prior_cost, total_cost
+from estimator.graph.robust import Weighted, mixture_cost, prior_cost, total_cost
 from estimator.smoothing.chain.chain import Chain
 from estimator.smoothing.chain.strand import Strand, WalkMotion
 from estimator.smoothing.keyframes.ends import faced
@@ -87,8 +87,14 @@ class Objective:
 
     def cost(self, x: Array, residual: Array, motions: list[Motion]) -> float:
         """Negative log likelihood up to a constant: mixtures of the readings, motion, priors."""
-        rows = self.rows
-        total: float = total_cost(self.left_out, residual, rows.sigma, *rows.noise.T)
+        rows, noise, costs = self.rows, self.rows.noise.T, np.empty(len(residual))
+
+        def tell(first: int, last: int) -> None:
+            own = slice(first, last)
+            costs[own] = mixture_cost(residual[own], rows.sigma[own], *noise[:, own])
+
+        rows.in_shares(tell)
+        total: float = total_cost(self.left_out, costs)
         total += prior_cost(x, self._at, self._mean, self._information)
         for motion in motions:
             total += misfit(motion)

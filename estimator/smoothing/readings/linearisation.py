@@ -112,24 +112,30 @@ def chain_rule(slope: Array, turned: Array, row: Array) -> None:
         row[3 + c] = slope[0] * turned[0, c] + slope[1] * turned[1, c] + slope[2] * turned[2, c]
 
 
-@njit(cache=True)
-def residuals(readings: Readings, x: Array) -> Array:
-    """Residuals z − h(x) of all rows at an estimate x, flat; bearings not yet wrapped."""
-    m, n, d = len(readings.kind), len(readings.axis), len(readings.by.kind)
-    found = np.empty(m + n + 3 * d)
+@njit(cache=True, nogil=True)
+def residuals(readings: Readings, numbers: Array, first: int, last: int, found: Array) -> None:
+    """Residuals z − h(x) of some rows at an estimate; bearings not yet wrapped.
+
+    Args:
+        readings: of the window.
+        numbers: the estimate, see `ends.faced`.
+        first: the first of the rows.
+        last: the one after the last of them.
+        found: takes them, rows.
+    """
+    m, n, x = len(readings.kind), len(readings.axis), numbers[:, 0]
     a, b, turned = np.empty(3), np.empty(3), np.zeros((3, 3))
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
-    numbers = faced(x, readings.headings)
     value, constants, ahead = readings.value, readings.constant, readings.ahead
-    for i in range(m):
+    for i in range(first, min(last, m)):
         place_end(ends_a, i, numbers, a, turned)
         place_end(ends_b, i, numbers, b, turned)
         constant = counted_from(kinds[i], constants[i], ends_a, i, x)
         seen = predict_pair(kinds[i], value[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
         found[i] = value[i] - seen.predicted - ahead[i] * x[extra[i, 2]]
     on, by, crumb = readings.on, readings.by, readings.crumb
-    for i in range(n):
+    for i in range(max(first - m, 0), min(last - m, n)):
         axis = readings.axis[i]
         place_end(on, i, numbers, a, turned)
         here = a[axis] if axis < 3 else x[on.at[i, axis]]
@@ -138,31 +144,31 @@ def residuals(readings: Readings, x: Array) -> Array:
         if readings.off[i, 1] >= 0:
             here -= readings.speed[i] * x[readings.off[i, 1]]
         found[m + i] = readings.told[i] - here
-    for i in range(d):
+    for k in range(max(first - m - n, 0), last - m - n):
+        i, c = k // 3, k % 3
         place_end(by, i, numbers, a, turned)
         place_end(crumb, i, numbers, b, turned)
-        for c in range(3):
-            found[m + n + 3 * i + c] = a[c] - b[c]
-    return found
+        found[m + n + k] = a[c] - b[c]
 
 
-@njit(cache=True)
-def jacobians(readings: Readings, x: Array, found: Array) -> None:
-    """Derivatives of all rows by what each depends on.
+@njit(cache=True, nogil=True)
+def jacobians(readings: Readings, numbers: Array, first: int, last: int, found: Array) -> None:
+    """Derivatives of some rows by what each depends on.
 
     Args:
         readings: of the window.
-        x: the estimate, flat.
+        numbers: the estimate, see `ends.faced`.
+        first: the first of the rows.
+        last: the one after the last of them.
         found: takes them, rows × 15; zeros before. Numpy is given memory for it in large pages, a compiled
             loop would wait for thousands of small ones.
     """
-    m, n, d = len(readings.kind), len(readings.axis), len(readings.by.kind)
+    m, n, x = len(readings.kind), len(readings.axis), numbers[:, 0]
     a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
     slope = np.empty(3)
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
-    numbers = faced(x, readings.headings)
     value, constants, ahead = readings.value, readings.constant, readings.ahead
-    for i in range(m):
+    for i in range(first, min(last, m)):
         kind = kinds[i]
         by_a[:], by_b[:] = 0.0, 0.0
         place_end(ends_a, i, numbers, a, by_a)
@@ -180,7 +186,7 @@ def jacobians(readings: Readings, x: Array, found: Array) -> None:
         elif kind == BODY_BEARING and ends_a.kind[i] == UNIT:
             found[i, 3] += seen.by_first
     on, by, crumb = readings.on, readings.by, readings.crumb
-    for i in range(n):
+    for i in range(max(first - m, 0), min(last - m, n)):
         row, axis = found[m + i], readings.axis[i]
         row[axis] = 1.0
         if readings.off[i, 0] >= 0:
@@ -191,16 +197,15 @@ def jacobians(readings: Readings, x: Array, found: Array) -> None:
             row[3:6] = by_a[axis]
         if readings.off[i, 1] >= 0:
             row[13] = -readings.speed[i]
-    for i in range(d):
+    for k in range(max(first - m - n, 0), last - m - n):
+        row, i, c = found[m + n + k], k // 3, k % 3
         by_a[:], by_b[:] = 0.0, 0.0
         place_end(by, i, numbers, a, by_a)
         place_end(crumb, i, numbers, b, by_b)
-        for c in range(3):
-            row = found[m + n + 3 * i + c]
-            if by.kind[i] != FIXED:
-                row[c], row[3:6] = -1.0, -by_a[c]
-            if crumb.kind[i] != FIXED:
-                row[6 + c], row[9:12] = 1.0, by_b[c]
+        if by.kind[i] != FIXED:
+            row[c], row[3:6] = -1.0, -by_a[c]
+        if crumb.kind[i] != FIXED:
+            row[6 + c], row[9:12] = 1.0, by_b[c]
 
 
 @njit(cache=True)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from copy import copy
 from functools import cached_property
-from typing import Self
+from typing import Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +14,9 @@ from estimator.fusion.memory.ledger import BEARING, ECHO, RANGE, RSSI, UNTOLD_PO
 from estimator.fusion.readings import echoes
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
+from estimator.graph.parallel import in_shares
 from estimator.measurements.bearing import wrap
-from estimator.smoothing.keyframes.ends import FREE, UNIT, place_ends
+from estimator.smoothing.keyframes.ends import FREE, UNIT, faced, place_ends
 from estimator.smoothing.keyframes.ground import ground_of
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.unknowns import Unknowns
@@ -38,6 +39,8 @@ from estimator.smoothing.readings.window_readings import ALTIMETER, RECEIVER, Le
 
 PER_ROW = ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike", "turns", "told", "_alone")
 """What there is one of for each row."""
+
+T = TypeVar("T")
 
 
 class Linearised:
@@ -180,7 +183,7 @@ class Rows:
         """
         m = len(self.pairs)
         self.shift = np.zeros(len(self.nominal))
-        off = residuals(self._readings, x)
+        off = self._read(x)
         among = self._inside & (self.pairs[:, 1] == RANGE) & ~self.through(x)
         steep_m = np.abs(separations(self._readings, x)[:, 2])
         white, common = self._white.copy(), self._common.copy()
@@ -259,16 +262,27 @@ class Rows:
 
     def residual(self, x: Array) -> Array:
         """Residuals z − h(x) − shift at an estimate x, flat."""
-        found = residuals(self._readings, x) - self.shift
+        found = self._read(x)
+        found -= self.shift
         if len(self._bearings):
             found[self._bearings] = wrap(found[self._bearings])
         return found
 
     def jacobian(self, x: Array) -> Array:
         """Derivatives at an estimate x, flat, m × 15."""
-        found = np.zeros((len(self.nominal), ANY))
-        jacobians(self._readings, x, found)
+        found, numbers = np.zeros((len(self.nominal), ANY)), faced(x, self._readings.headings)
+        self.in_shares(lambda first, last: jacobians(self._readings, numbers, first, last, found))
         return found
+
+    def _read(self, x: Array) -> Array:
+        """Residuals z − h(x) at an estimate, flat; bearings not yet wrapped."""
+        found, numbers = np.empty(len(self.nominal)), faced(x, self._readings.headings)
+        self.in_shares(lambda first, last: residuals(self._readings, numbers, first, last, found))
+        return found
+
+    def in_shares(self, work: Callable[[int, int], T]) -> list[T]:
+        """What some work on its rows gives, share by share: see `graph.parallel.in_shares`."""
+        return in_shares(work, len(self.nominal), self._layout.state.ledger.complete)
 
     @property
     def readings(self) -> Readings:

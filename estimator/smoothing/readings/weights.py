@@ -28,7 +28,14 @@ def weigh_readings(rows: Rows, residual: Array, slack_m: float, doubt: Array | N
     if slack_m > 0.0:
         sigma = loosened(rows, slack_m)
         unsure = np.where(rows.turns, physics.BIAS_SIGMA_MOST_RADPS**2, unsure)
-    return weigh(residual, sigma, unsure, *rows.noise.T)
+    noise = rows.noise.T
+
+    def weighed(first: int, last: int) -> Weighted:
+        own = slice(first, last)
+        return weigh(residual[own], sigma[own], unsure[own], *noise[:, own])
+
+    shares = rows.in_shares(weighed)
+    return shares[0] if len(shares) == 1 else Weighted(*map(np.concatenate, zip(*shares, strict=True)))
 
 
 def loosened(rows: Rows, slack_m: float) -> Array:

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from estimator.fusion import physics
 from estimator.fusion.memory.ledger import BODY_BEARING, RANGE, RSSI
+from estimator.graph import parallel
 from estimator.graph.dense import Array
 from estimator.measurements import bearing
 from estimator.smoothing.keyframes.displacement_sums import Way
@@ -190,6 +191,24 @@ def test_the_rows_of_a_window_change_with_its_unknowns_as_told(incident: Problem
         by_heading[own] = -1.0 if counted else 0.0
         expected[row] = by_heading + share * (expected[row] - by_heading)
     assert np.abs(told - expected).max() < 1e-5 * (1.0 + np.abs(expected).max())
+
+
+def test_rows_shared_out_are_the_same_to_the_last_bit(
+    incident: Problem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Wherever a share ends: among the pairs, the singles, or between two rows of a drop."""
+    x, rows = random_state(incident, 0), incident.rows
+    residual, jacobian = rows.residual(x), rows.jacobian(x)
+    weighted, cost = incident.weigh(residual, slack_m=0.3), incident.at(x).cost
+    assert min(len(rows.pairs), len(rows.singles), len(rows.drops)) > 1
+    monkeypatch.setattr(parallel, "MANY", 0)
+    for cores in (2, 3, 7, len(residual)):
+        monkeypatch.setattr(parallel, "get_num_threads", lambda cores=cores: cores)
+        assert np.array_equal(rows.residual(x), residual)
+        assert np.array_equal(rows.jacobian(x), jacobian)
+        for found, expected in zip(incident.weigh(residual, slack_m=0.3), weighted, strict=True):
+            assert np.array_equal(found, expected)
+        assert incident.at(x).cost == cost
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -12,6 +12,8 @@ from typing import TypeVar
 from numba import get_num_threads
 
 T = TypeVar("T")
+MANY = 10_000
+"""From so many rows on they are worth sharing out: fewer are done before threads have begun."""
 
 
 @cache
@@ -34,3 +36,18 @@ def in_parallel(function: Callable[..., T], *items: Iterable[object]) -> list[T]
     for one in begun:
         one.exception()
     return [one.result() for one in begun]
+
+
+def in_shares(work: Callable[[int, int], T], count: int, waited: bool) -> list[T]:
+    """What some work on rows that do not depend on each other gives: share by share, in their order.
+
+    Args:
+        work: takes the first row of a share, and the one after its last; changes those rows only.
+        count: how many rows there are.
+        waited: somebody waits for it: `MANY` rows or more are shared out among the cores.
+    """
+    shares = get_num_threads() if waited and count >= MANY else 1
+    ends = [count * share // shares for share in range(shares + 1)]
+    if shares == 1:
+        return [work(0, count)]
+    return in_parallel(work, ends[:-1], ends[1:])

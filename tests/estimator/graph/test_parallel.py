@@ -2,12 +2,14 @@
 
 import threading
 from collections.abc import Callable, Iterable
+from itertools import chain as chained
 
 import numpy as np
 import pytest
 
+from estimator.graph import parallel
+from estimator.graph.parallel import in_parallel, in_shares
 from estimator.smoothing.chain import chain
-from estimator.smoothing.chain.parallel import in_parallel
 from tests.estimator.smoothing.windows import fused, problem_of
 from tests.estimator.walks import two_responders
 
@@ -37,6 +39,16 @@ def test_what_one_of_them_raises_is_raised_when_all_have_ended() -> None:
     with pytest.raises(ValueError, match="walk 1"):
         in_parallel(work, [1, 2, 3, 4, 5, 6])
     assert sorted(ended) == [3, 4, 5, 6]
+
+
+def test_shares_of_rows_are_all_of_them_once_and_in_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parallel, "get_num_threads", lambda: 3)
+    monkeypatch.setattr(parallel, "MANY", 4)
+    for count in range(12):
+        shares = in_shares(lambda first, last: list(range(first, last)), count, waited=True)
+        assert list(chained.from_iterable(shares)) == list(range(count))
+        assert len(shares) == (1 if count < 4 else 3)
+        assert len(in_shares(lambda *share: share, count, waited=False)) == 1
 
 
 def watched(monkeypatch: pytest.MonkeyPatch) -> list[str]:
