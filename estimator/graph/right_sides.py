@@ -6,7 +6,7 @@ from numba import njit
 from estimator.graph.dense import Array
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def carry(diagonal: Array, link: Array, wide: Array, y: Array, rest: Array) -> None:
     """Right sides to the end after `eliminate`: `y` of keyframes, k × n × c; `rest`, of the border, s × c."""
     length, width, count = y.shape
@@ -34,7 +34,7 @@ def carry(diagonal: Array, link: Array, wide: Array, y: Array, rest: Array) -> N
                     y[j + 1, r, i] -= link[j, block, r - block * size, c] * back[block * size + c, i]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def carry_back(diagonal: Array, link: Array, wide: Array, y: Array, fixed: Array) -> None:
     """Answers in the place of what `carry` left in `y`, k × n × c, for those of the border, s × c."""
     length, width, count = y.shape

@@ -189,16 +189,20 @@ class Chain:
             right: of the keyframes, k × n × c.
             corner: of the border, s × c.
         """
-        carried, rest = [], corner.copy()
-        for strand in self.strands:
+        rest = corner.copy()
+
+        def carry(strand: Strand) -> tuple[Array, Array]:
             y, own = right[:, strand.group.columns], np.zeros((len(strand.group.lasting), corner.shape[1]))
             strand.carry(y, own)
+            return y, own
+
+        carried = self.each(carry)
+        for strand, (_, own) in zip(self.strands, carried, strict=True):
             rest[strand.group.lasting] += own
-            carried.append(y)
         fixed: Array = inverse(self._cholesky) @ rest
         found = np.zeros(right.shape)
-        for strand, y in zip(self.strands, carried, strict=True):
-            strand.carry_back(y, fixed[strand.group.lasting])
+        self.each(lambda strand, there: strand.carry_back(there[0], fixed[strand.group.lasting]), carried)
+        for strand, (y, _) in zip(self.strands, carried, strict=True):
             found[:, strand.group.columns] = y
         return found, fixed
 

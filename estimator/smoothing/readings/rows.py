@@ -13,7 +13,7 @@ from estimator.fusion.learned.noise import LearnedNoise
 from estimator.fusion.memory.ledger import BEARING, ECHO, RANGE, RSSI, UNTOLD_POWER
 from estimator.fusion.readings import echoes
 from estimator.graph.chain_kernels import Integers
-from estimator.graph.dense import Array
+from estimator.graph.dense import Array, Indices
 from estimator.graph.parallel import in_shares
 from estimator.measurements.bearing import wrap
 from estimator.smoothing.keyframes.ends import FREE, UNIT, faced, place_ends
@@ -35,7 +35,7 @@ from estimator.smoothing.readings.obstructed import excess
 from estimator.smoothing.readings.partial import partial
 from estimator.smoothing.readings.stacked import NOISES, StackedReadings, scattered, sigmas
 from estimator.smoothing.readings.thinning import once_a_second
-from estimator.smoothing.readings.window_readings import ALTIMETER, RECEIVER, LedgerRows, window_readings
+from estimator.smoothing.readings.window_readings import LedgerRows, technologies_of, window_readings
 
 PER_ROW = ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike", "turns", "told", "_alone")
 """What there is one of for each row."""
@@ -126,9 +126,15 @@ class Rows:
         named = np.zeros(len(self._layout.state.owners) + 1, dtype=np.bool_)
         named[list(numbers)] = True
         named[table[named[table[:, 2].astype(np.intp)], 1].astype(np.intp)] = True
-        pairs, drops = self.pairs[:, 2:4].astype(np.intp), self.drops[:, 1:3].astype(np.intp)
-        singles = named[self.singles[:, 1].astype(np.intp)]
-        return np.concatenate([named[pairs].any(axis=1), singles, np.repeat(named[drops].any(axis=1), 3)])
+        one, other, single, crumb, by = self._nodes
+        dropped = np.repeat(named[crumb] | named[by], 3)
+        return np.concatenate([named[one] | named[other], named[single], dropped])
+
+    @cached_property
+    def _nodes(self) -> tuple[Indices, ...]:
+        """The numbers of who is at each end of the pairs, in the singles, and in the drops."""
+        told = (self.pairs, 2), (self.pairs, 3), (self.singles, 1), (self.drops, 1), (self.drops, 2)
+        return tuple(rows[:, column].astype(np.intp) for rows, column in told)
 
     def part(self, numbers: Unknowns, x: Array, chosen: NDArray[np.bool_]) -> Self:
         """Some of them, as readings of a part of the window; nothing is to be learned of their noise.
@@ -142,6 +148,7 @@ class Rows:
         pairs, singles, drops = chosen[:m], chosen[m : m + n], chosen[m + n :: 3]
         unsure = zip(self._unsure_m2, (pairs, pairs, singles, drops), strict=True)
         other, columns = copy(self), self.columns[chosen]
+        vars(other).pop("_nodes", None)
         for name in PER_ROW:
             setattr(other, name, getattr(self, name)[chosen])
         other.columns = np.where(columns >= 0, numbers.column[columns], -1)
@@ -288,15 +295,3 @@ class Rows:
     def readings(self) -> Readings:
         """All that their residuals follow from, as numbers."""
         return self._readings
-
-
-def technologies_of(layout: Layout) -> Integers:
-    """First column of each technology of a window, kinds × sources; −1: there is none.
-
-    After those of the kinds of pairs stand altimeters and receivers.
-    """
-    found = np.full((RECEIVER + 1, len(layout.state.sources)), -1, dtype=np.int64)
-    of_kind = {"range": RANGE, "rssi": RSSI, "altimeter": ALTIMETER, "receiver": RECEIVER}
-    for (kind, source), start in layout.technologies.items():
-        found[of_kind[kind], source] = layout.width + start
-    return found

@@ -7,11 +7,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from estimator.fusion.learned.receivers import LATE_NUMBER
-from estimator.fusion.memory.ledger import BEARING, GYRO_BIAS, RSSI
+from estimator.fusion.memory.ledger import BEARING, GYRO_BIAS, RANGE, RSSI
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.ends import FREE, UNIT
 from estimator.smoothing.keyframes.ground import Ends, Ground, ends_of, selected_ends
+from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.readings.encounters import candidates
 from estimator.smoothing.readings.linearisation import Readings
@@ -119,6 +120,18 @@ def window_readings(
     bearings = np.flatnonzero(readings.kind >= BEARING)
     told = LedgerRows(pairs, singles, drops)
     return WindowReadings(told, rows, readings, inside, peaks(pairs), turns, bearings, unsure_m2)
+
+
+def technologies_of(layout: Layout) -> Integers:
+    """First column of each technology of a window, kinds × sources; −1: there is none.
+
+    After those of the kinds of pairs stand altimeters and receivers.
+    """
+    found = np.full((RECEIVER + 1, len(layout.state.sources)), -1, dtype=np.int64)
+    of_kind = {"range": RANGE, "rssi": RSSI, "altimeter": ALTIMETER, "receiver": RECEIVER}
+    for (kind, source), start in layout.technologies.items():
+        found[of_kind[kind], source] = layout.width + start
+    return found
 
 
 @njit(cache=True)
