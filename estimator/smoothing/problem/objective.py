@@ -85,16 +85,20 @@ class Objective:
         """Each walk's motion at an estimate."""
         return self.going.motions(x)
 
-    def cost(self, x: Array, residual: Array, motions: list[Motion]) -> float:
-        """Negative log likelihood up to a constant: mixtures of the readings, motion, priors."""
-        rows, noise, costs = self.rows, self.rows.noise.T, np.empty(len(residual))
+    def costs(self, residual: Array) -> Array:
+        """Negative log likelihood of each reading up to a constant, by the residuals, m."""
+        rows, noise, found = self.rows, self.rows.noise.T, np.empty(len(residual))
 
         def tell(first: int, last: int) -> None:
             own = slice(first, last)
-            costs[own] = mixture_cost(residual[own], rows.sigma[own], *noise[:, own])
+            found[own] = mixture_cost(residual[own], rows.sigma[own], *noise[:, own])
 
         rows.in_shares(tell)
-        total: float = total_cost(self.left_out, costs)
+        return found
+
+    def cost(self, x: Array, residual: Array, motions: list[Motion]) -> float:
+        """Negative log likelihood up to a constant: mixtures of the readings, motion, priors."""
+        total: float = total_cost(self.left_out, self.costs(residual))
         total += prior_cost(x, self._at, self._mean, self._information)
         for motion in motions:
             total += misfit(motion)

@@ -11,13 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.graph.dense import Array
-from estimator.graph.robust import mixture_cost
 from estimator.smoothing.keyframes.walks import misfit
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
-
-UP = 2
-"""Which of a state's numbers is its height."""
+from estimator.smoothing.units.held_heights import UP
 
 
 class MarginalCost(NamedTuple):
@@ -45,7 +42,7 @@ def marginal_cost(problem: Problem, solved: Solution) -> MarginalCost:
     rows, walks = problem.rows, problem.layout.walks
     solved.chain.reduce()
     walked, border = solved.chain.log_determinants()
-    costs, own = mixture_cost(solved.linear.residual, rows.sigma, *rows.noise.T), np.zeros(len(walks))
+    costs, own = problem.costs(solved.linear.residual), np.zeros(len(walks))
     for i, (walk, motion) in enumerate(zip(walks, solved.motions, strict=True)):
         own[i] = costs[rows.of([walk.number])].sum() + misfit(motion)
         if walk.way is not None:

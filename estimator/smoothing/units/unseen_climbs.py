@@ -10,19 +10,25 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
+from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.steps import CLIMB_M2_PER_M
 from estimator.graph.dense import Array
+from estimator.smoothing.keyframes.displacement_sums import Way
+from estimator.smoothing.keyframes.layout import Layout, own_rows
+from estimator.smoothing.keyframes.walks import FLOOR, VARIANCES
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
-from estimator.smoothing.units.marginal_heights import UP, MarginalCost, marginal_cost
+from estimator.smoothing.units.held_heights import UP, height_costs
+from estimator.smoothing.units.marginal_heights import MarginalCost, marginal_cost
 
 OFF_PLANE_M = 0.3
 """Far enough for distances to lead on, too little for them to tell."""
 CLEAR = 10.0
 """Log odds from which on somebody has climbed. A kick is found by as much."""
 SOON, HOPELESS = 3, 10.0
-"""Steps after which heights are given up whose readings are this much less likely with each of them."""
+"""Steps after which heights are given up whose readings are this much less likely with each of them. Those
+whose powers are as unlikely with all else held are not solved at all."""
 HINT = 5.0
 """Readings that cost so much more than they did hint at heights: it was 18 to 22 where somebody had climbed.
 On the level they may as well, by chance: then it is asked in vain."""
@@ -63,12 +69,14 @@ def find_unseen_climb(
     level = [i for i in doubted if layout.walks[i].number in lacking]
     if not level:
         return problem, solved
+    state.level_cost = solved.cost / max(len(problem.rows.slab), 1)
+    if _hopeless(problem, solved, level):
+        return problem, solved
     x = solved.x.copy()
     for i in level:
         layout.states(x, i)[:, UP] += OFF_PLANE_M
     trial = _trial(problem, solved, level, build)
     found = trial.solve(x, iterations=SOON, resting=resting)
-    state.level_cost = solved.cost / max(len(problem.rows.slab), 1)
     before: MarginalCost | None = None
     if not found.rests:
         before = marginal_cost(problem, solved)
@@ -112,6 +120,21 @@ def _trial(
     return trial
 
 
+def _hopeless(problem: Problem, solved: Solution, level: Sequence[int]) -> bool:
+    """Whether powers of each of some walks, by index, speak clearly against heights, all else held.
+
+    Who is ranged is asked with all else free: ranges are so sharp that whom they have dragged aside no height
+    brings back by itself.
+    """
+    layout, rows = problem.layout, problem.rows
+    walks = [layout.walks[i] for i in level]
+    ranged = rows.of([walk.number for walk in walks])[: len(rows.pairs)] & (rows.pairs[:, 1] == RANGE)
+    if ranged.any() or any(walk.first == walk.last for walk in walks):
+        return False
+    climbs_m2 = {i: _climbing_m2(layout, i) for i in level}
+    return min(height_costs(problem, solved, climbs_m2, OFF_PLANE_M).values()) > HOPELESS
+
+
 def _heights(problem: Problem, x: Array, index: int) -> Array:
     walk = problem.layout.walks[index]
     heights: Array = problem.layout.states(x, index)[walk.first : walk.last + 1, UP]
@@ -133,6 +156,19 @@ def _let_climb(state: FusionState, numbers: Collection[int], since_t: float) -> 
     mine = np.isin(steps[:, 1], list(numbers)) & (steps[:, 0] > since_t)
     steps[mine, 7] = np.maximum(steps[mine, 7], _climbs_m2(steps[mine]))
     state.ledger.replace("steps", steps)
+
+
+def _climbing_m2(layout: Layout, index: int) -> Array:
+    """Variance of each of a walk's steps between keyframes in height, were it let climb (m²)."""
+    walk, steps = (
+        layout.walks[index],
+        own_rows(layout.state.ledger.table("steps"), layout.walks[index].number),
+    )
+    steps = steps.copy()
+    steps[:, 7] = np.maximum(steps[:, 7], _climbs_m2(steps))
+    way, t = Way(steps[0, 2], steps, walk.node.walk_factors), layout.times[walk.first : walk.last + 1, index]
+    found: Array = np.maximum(way.between(t[:-1], t[1:])[:, VARIANCES[UP]], 0.0) + FLOOR[UP]
+    return found
 
 
 def _climbs_m2(steps: Array) -> Array:

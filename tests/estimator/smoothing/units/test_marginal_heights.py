@@ -10,7 +10,8 @@ from estimator.measurements.node import Node
 from estimator.measurements.rssi import Rssi
 from estimator.smoothing.problem.newton import RESTING, Problem
 from estimator.smoothing.problem.solution import Solution
-from estimator.smoothing.units.marginal_heights import UP, marginal_cost
+from estimator.smoothing.units.held_heights import UP
+from estimator.smoothing.units.marginal_heights import marginal_cost
 from estimator.smoothing.units.unseen_climbs import find_unseen_climb
 from tests.estimator.smoothing.windows import entered, fused, problem_of, unlikelihood
 
