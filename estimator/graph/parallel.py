@@ -25,6 +25,8 @@ def _threads() -> ThreadPoolExecutor:
 def in_parallel(function: Callable[..., T], *items: Iterable[object]) -> list[T]:
     """What a function gives for each item, or each row of items, in their order.
 
+    Each thread takes the next item that is left: it is woken once for all of them, not once for each.
+
     Args:
         function: changes nothing that another item's call reads.
         items: its arguments, as many of each.
@@ -32,10 +34,22 @@ def in_parallel(function: Callable[..., T], *items: Iterable[object]) -> list[T]
     Raises:
         Exception: what the function raised first, by the order of the items; by then all have ended.
     """
-    begun = [_threads().submit(function, *row) for row in zip(*items, strict=True)]
+    rows = list(zip(*items, strict=True))
+    found, raised, left = dict[int, T](), dict[int, Exception](), iter(range(len(rows)))
+
+    def work() -> None:
+        for i in left:
+            try:
+                found[i] = function(*rows[i])
+            except Exception as error:  # noqa: BLE001 - who asks is told
+                raised[i] = error
+
+    begun = [_threads().submit(work) for _ in range(min(get_num_threads(), len(rows)))]
     for one in begun:
-        one.exception()
-    return [one.result() for one in begun]
+        one.result()
+    if raised:
+        raise raised[min(raised)]
+    return [found[i] for i in range(len(rows))]
 
 
 def in_shares(work: Callable[[int, int], T], count: int, waited: bool) -> list[T]:
