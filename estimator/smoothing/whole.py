@@ -109,7 +109,7 @@ def _solved(state: FusionState) -> tuple[Problem, Solution]:
     # Where no wall is, what is assumed of it would have a unit's noise explain less than it does.
     rows.learn(state.noise, walls=False)
     for most in later:
-        problem = Problem(_layout(state), rows, None)
+        problem = problem.with_units(_layout(state))
         solved = problem.solve(solved.x, iterations=1)
         learn(state, problem, solved, most, kinds=False)
     problem = _problem(state)

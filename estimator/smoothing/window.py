@@ -55,7 +55,7 @@ def solve_if_due(state: FusionState, t: float, rarer: float = 1.0) -> None:
             periods = 1.0 if state.bent_m > BENT_M else CALM
         waited_s = (t - state.refreshed_t) / rarer
         # Most ticks come too soon for any window: how much work this one is need not be asked.
-        if waited_s < periods * SOONEST_S or waited_s / period_s(state) < periods:
+        if waited_s < periods * usual_s(state) or waited_s / period_s(state) < periods:
             return
     solve_now(state, t)
 
@@ -86,6 +86,10 @@ def solve_for_headings(state: FusionState) -> None:
 
 def period_s(state: FusionState) -> float:
     """Time between two solutions (s): short while the window is young, long where it costs much."""
+    return usual_s(state) * max(1.0, SHORTEST_S / spacing_s(state) * work(state) / WORK)
+
+
+def usual_s(state: FusionState) -> float:
+    """The same where none costs much (s)."""
     span = state.newest_t - (state.newest_t if state.window_t is None else state.window_t)
-    usual = min(max(YOUNG * span, SOONEST_S), PERIOD_S)
-    return usual * max(1.0, SHORTEST_S / spacing_s(state) * work(state) / WORK)
+    return min(max(YOUNG * span, SOONEST_S), PERIOD_S)

@@ -55,6 +55,12 @@ class Objective:
         other.left_out = left_out
         return other
 
+    def with_units(self, layout: Layout) -> Self:
+        """The same rows, whose units are as noisy as another layout of the same unknowns has them."""
+        other = type(self)(layout, self.rows, self.prior)
+        vars(other)["coupled"] = self.coupled
+        return other
+
     def part(self, numbers: Unknowns, x: Array, chosen: NDArray[np.bool_], left: HeldQuadratic) -> Self:
         """Some walks by themselves up to some keyframe, with all others held where they are.
 

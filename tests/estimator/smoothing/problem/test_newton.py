@@ -1,8 +1,10 @@
 """Where a solution may start from."""
 
 import numpy as np
+from msgspec.structs import replace
 
 from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.problem.newton import Problem
 from tests.estimator.smoothing.learning.test_wrong_steps import walk
 from tests.estimator.smoothing.windows import fused, problem_of
 
@@ -34,3 +36,17 @@ def test_rows_that_are_left_out_neither_pull_nor_cost() -> None:
     again = others.solve(x)
     assert np.abs(again.x - found.x).max() < 1e-9
     assert again.cost == found.cost
+
+
+def test_units_found_to_be_noisier_are_solved_as_in_a_problem_made_anew() -> None:
+    state = fused(walk())
+    problem = problem_of(state)
+    x = problem.solve(problem.layout.start()).x
+    for walked in problem.layout.walks:
+        state.keep(replace(state.life(walked.number), walk_factors=(9.0, 4.0)))
+    anew = problem_of(state)
+    found = problem.with_units(anew.layout).solve(x)
+    expected = Problem(anew.layout, problem.rows, None).solve(x)
+    assert np.array_equal(found.x, expected.x)
+    assert found.cost == expected.cost
+    assert np.abs(found.x - x).max() > 1e-3
