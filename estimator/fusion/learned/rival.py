@@ -57,23 +57,23 @@ technology (m²); the other end's place, east, north (m); how much higher the be
 how much longer it is than the unit's way foretells (m), and the variance of that (m²); 0. Of a power the same
 in dB: how much weaker it is made by the way, and its path-loss exponent."""
 TOLD = 13
+T, STATE, COVARIANCE = 0, slice(1, 5), slice(5, 15)
+"""Columns of a rival's way: its epoch (s), NaN: there is none; east, north (m), and both velocities (m/s);
+the upper triangle of the covariance of these."""
+WAY = 15
 
 
 class Rival(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Where somebody is by ranges alone, and how likely it is that his unit is no good.
 
     Attributes:
-        t: epoch that it refers to (s).
-        state: east, north (m), and both velocities (m/s).
-        covariance: of these, the upper triangle.
-        links: what each link tells, as `odds_of` takes it, in C order: of many nothing else is asked.
+        way: its row, see `WAY`, in C order: of most nothing but the odds is asked.
+        links: what each link tells, as `odds_of` takes it, in C order: the same.
         odds: log odds that the unit is no good.
         ranged_t: epoch of the newest range that it followed (s).
     """
 
-    t: float
-    state: tuple[float, ...]
-    covariance: tuple[float, ...]
+    way: bytes
     links: bytes
     odds: float
     ranged_t: float = -math.inf
@@ -90,7 +90,9 @@ class Rival(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     def place(self, t: float) -> tuple[Array, Array]:
         """Where he is at an epoch `t` (s): east, north, 2 (m), and their covariance, 2 × 2 (m²)."""
-        state, covariance = predicted(np.array(self.state), full(np.array(self.covariance)), t - self.t)
+        way = np.frombuffer(self.way)
+        known = way[STATE].copy(), full(way[COVARIANCE].copy())
+        state, covariance = predicted(*known, t - float(way[T]))
         return state[:2], covariance[:2, :2]
 
     def doubt_m2(self, place_m: Array, t: float) -> Array:

@@ -6,19 +6,18 @@ same: it may be a clock that is off, or a radio that is not on him.
 """
 
 import math
-from collections.abc import Iterator
 from typing import NamedTuple
 
 from msgspec.structs import replace
 
 from estimator.fusion import physics
 from estimator.fusion.learned.noise import LearnedNoise
-from estimator.fusion.learned.rival import MEMORY_S, RARE, Rival
+from estimator.fusion.learned.rival import MEMORY_S, RARE
 from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.silence import SILENT_S
-from estimator.fusion.rows.rival_kernels import NONE, RivalUpdate, Units, links_of, units_from
+from estimator.fusion.rows.rival_kernels import RivalUpdate, Units, rivals_of, units_from
 from estimator.fusion.rows.rows import KIND
 from estimator.graph.dense import Array
 
@@ -62,16 +61,12 @@ def ask(state: FusionState, table: Array) -> QuestionedUnits:
     # Where nobody is asked about there is something to do only for who was.
     if all(map(math.isnan, asked_t)) and all(node.rival is None for node in nodes):
         return NOBODY
-    rows = []
-    for node, t, by_powers in zip(nodes, asked_t, powers, strict=True):
-        rival, start = node.rival, state.graph.starts[node.position]
-        if rival is None:
-            rows.append((start, t, by_powers, *NONE))
-            continue
-        known = (rival.t, *rival.state, *rival.covariance, rival.odds, rival.ranged_t)
-        rows.append((start, t, by_powers, *known))
-    links = [b"" if node.rival is None else node.rival.links for node in nodes]
-    return QuestionedUnits(nodes, asked_t, units_from(rows, links))
+    starts = state.graph.starts
+    rows = [
+        (starts[node.position], t, by_powers)
+        for node, t, by_powers in zip(nodes, asked_t, powers, strict=True)
+    ]
+    return QuestionedUnits(nodes, asked_t, units_from(rows, [node.rival for node in nodes]))
 
 
 def answer(state: FusionState, asked: QuestionedUnits, found: RivalUpdate) -> None:
@@ -84,7 +79,7 @@ def answer(state: FusionState, asked: QuestionedUnits, found: RivalUpdate) -> No
     """
     if not found.heard:
         return
-    for node, asked_t, rival in zip(asked.nodes, asked.epochs, _rivals(found), strict=True):
+    for node, asked_t, rival in zip(asked.nodes, asked.epochs, rivals_of(found), strict=True):
         if math.isnan(asked_t) and node.rival is not None:
             state.nodes[node.node] = replace(node, rival=None)
         if rival is None:
@@ -100,7 +95,7 @@ def _asked(node: NodeState) -> bool:
     """Whether a unit leads its bearer, and one place is all that it may have led him to."""
     if (
         node.turned
-        or not all(other.by_unit for other in node.otherwise)
+        or (node.otherwise and not all(other.by_unit for other in node.otherwise))
         or node.apart is not None
         or node.unit_t is None
     ):
@@ -110,11 +105,17 @@ def _asked(node: NodeState) -> bool:
 
 def _asked_by_powers(state: FusionState, units: list[NodeState]) -> list[bool]:
     """Of which units powers are asked; a rival that only powers told of is forgotten where they are not."""
-    known = [state.noise[name] for name in state.noise if name.startswith(UNTOLD_POWER)]
+    known = [noise for name, noise in state.noise.items() if name.startswith(UNTOLD_POWER)]
     if not known:
         return [False] * len(units)
-    odd = any(_odd(noise) for noise in known)
-    powers = [_by_powers(node, odd) for node in units]
+    unranged = [node.rival is None or node.pose_t > node.rival.ranged_t + MEMORY_S for node in units]
+    if not any(unranged):
+        return unranged
+    odd = any(map(_odd, known))
+    powers = [
+        one and (odd or (node.rival is not None and node.rival.odds > RARE + SPOKEN))
+        for one, node in zip(unranged, units, strict=True)
+    ]
     for i, node in enumerate(units):
         if node.rival is not None and math.isinf(node.rival.ranged_t) and not powers[i]:
             state.nodes[node.node] = units[i] = replace(node, rival=None)
@@ -125,28 +126,3 @@ def _odd(noise: LearnedNoise) -> bool:
     """Whether powers are off by more, or more alike, than was assumed: a bad unit makes them so, or walls."""
     factor, shared, _ = noise.terms(0.0)
     return factor > 1.0 or shared > physics.SHARED_NOISE
-
-
-def _by_powers(node: NodeState, odd: bool) -> bool:
-    """Whether powers are asked of a unit: nobody has ranged its bearer lately.
-
-    Args:
-        node: the unit's.
-        odd: see `_odd`: of powers that are as they were assumed to be nothing is to be learned.
-    """
-    known = node.rival
-    if known is None:
-        return odd
-    unranged = node.pose_t > known.ranged_t + MEMORY_S
-    return unranged and (odd or known.odds > RARE + SPOKEN)
-
-
-def _rivals(found: RivalUpdate) -> Iterator[Rival | None]:
-    """The units' rivals; None: no reading tells of the unit."""
-    for (until_t, *numbers, odds, ranged_t), links in zip(
-        found.rivals.tolist(), links_of(found), strict=True
-    ):
-        if math.isnan(until_t):
-            yield None
-        else:
-            yield Rival(until_t, tuple(numbers[:4]), tuple(numbers[4:]), links, odds, ranged_t)

@@ -1,9 +1,7 @@
 """What a tick's ranges and powers make of the rivals of units, compiled as one call: see `learned.rival`."""
 
 import math
-from bisect import bisect_left
-from collections.abc import Sequence
-from itertools import pairwise
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,18 +9,22 @@ from numba import njit
 
 from estimator.fusion.learned import rival
 from estimator.fusion.learned.rival import (
+    COVARIANCE,
     EPOCH,
     EXPONENT,
     LINK,
     MEMORY_S,
+    STATE,
     UNIT,
+    WAY,
+    Rival,
+    T,
     follow,
     led_by_unit,
     odds_of,
 )
 from estimator.fusion.rows.predicted_pairs import predict_pairs
 from estimator.fusion.rows.prediction import Prediction
-from estimator.fusion.rows.rows import table_from
 from estimator.graph.dense import Array
 from estimator.graph.symmetric import upper_of
 
@@ -30,17 +32,18 @@ AGAIN_S = 5.0
 """As long as its unit is believed a rival follows it within so many seconds: it was right until now."""
 CALM, STIRRED = -5.0, -1.0
 """Log odds between which a rival goes its own way more and more."""
-T, STATE, COVARIANCE, ODDS, RANGED = 0, slice(1, 5), slice(5, 15), 15, 16
-"""Columns of a rival, see `rival.Rival`; without an epoch there is none."""
-WIDTH = 17
-NONE = (math.nan,) * WIDTH
-OF, NUMBER = 0, slice(1, 4)
-"""Columns of what a link tells: number of the unit, and a row as `rival.odds_of` has it."""
-TELLS = 4
-START, ASKED_T, BY_POWERS, RIVAL = 0, 1, 2, slice(3, 3 + WIDTH)
+ODDS, RANGED, LINKS = range(WAY, WAY + 3)
+"""Columns of a rival behind those of its way: see `rival.Rival`; how many links tell of it."""
+WIDTH = WAY + 3
+NONE = np.full(WAY, math.nan).tobytes()
+TELLS = 3
+"""Columns of what a link tells, as `rival.odds_of` has it."""
+START, ASKED_T, BY_POWERS, RANGED_T, KNOWN = range(5)
 """Columns of a unit: where its position begins; the epoch that this refers to (s), NaN: the unit is not asked
-about; whether powers are told as well; its rival until now."""
-ASKED = 3 + WIDTH
+about; whether powers are told as well; of its rival until now, when it was ranged last (s), and how many
+links told of it."""
+ASKED = 5
+LINK_BYTES, WAY_BYTES = 8 * TELLS, 8 * WAY
 
 
 class Units(NamedTuple):
@@ -48,10 +51,12 @@ class Units(NamedTuple):
 
     Attributes:
         rows: of each `START` and what stands with it, units × `ASKED`.
-        links: what the links of their rivals have told until now, k × `TELLS`.
+        ways: those of their rivals until now, units × `WAY`.
+        links: what the links of these have told until now, k × `TELLS`, in order of units and links.
     """
 
     rows: Array
+    ways: Array
     links: Array
 
 
@@ -60,7 +65,7 @@ class RivalUpdate(NamedTuple):
 
     Attributes:
         heard: there are readings that may tell of any unit, asked about or not.
-        rivals: of each unit, units × `WIDTH`; no epoch: none tells of it.
+        rivals: of each unit, units × `WIDTH`; NaN: none tells of it.
         links: what the links of those that have an epoch tell, k × `TELLS`, in order of units and links.
     """
 
@@ -69,27 +74,40 @@ class RivalUpdate(NamedTuple):
     links: Array
 
 
-def units_from(rows: Sequence[Sequence[float]], links: Sequence[bytes]) -> Units:
-    """Units and what the links of their rivals have told, as tables.
+def units_from(rows: Sequence[tuple[float, float, bool]], rivals: Sequence[Rival | None]) -> Units:
+    """Units and their rivals, as tables.
 
     Args:
-        rows: of each unit, see `Units`.
-        links: of each unit, see `Rival.links`; empty: it has no rival.
+        rows: of each unit, see `START` and what stands with it, up to `BY_POWERS`.
+        rivals: of each unit until now; None: it has none.
     """
-    told, first = np.frombuffer(b"".join(links), dtype=np.float64).reshape(-1, TELLS - 1), 0
-    table = np.empty((len(told), TELLS))
-    table[:, NUMBER] = told
-    for unit, some in enumerate(links):
-        last = first + len(some) // (told.itemsize * (TELLS - 1))
-        table[first:last, OF], first = unit, last
-    return Units(table_from(rows, ASKED), table)
+    told, ways, links = list[float](), list[bytes](), list[bytes]()
+    for row, known in zip(rows, rivals, strict=True):
+        if known is None:
+            told += (*row, -math.inf, 0.0)
+            ways.append(NONE)
+        else:
+            told += (*row, known.ranged_t, len(known.links) // LINK_BYTES)
+            ways.append(known.way)
+            links.append(known.links)
+    # Of an array that must not be written numba looks up the type anew with each call.
+    return Units(
+        np.array(told, dtype=np.float64).reshape(-1, ASKED),
+        np.frombuffer(bytearray().join(ways)).reshape(-1, WAY),
+        np.frombuffer(bytearray().join(links)).reshape(-1, TELLS),
+    )
 
 
-def links_of(found: RivalUpdate) -> list[bytes]:
-    """What the links of each unit tell after a tick, see `Rival.links`."""
-    units = found.links[:, OF].tolist()
-    firsts = [bisect_left(units, unit) for unit in range(len(found.rivals) + 1)]
-    return [found.links[first:last, NUMBER].tobytes() for first, last in pairwise(firsts)]
+def rivals_of(found: RivalUpdate) -> Iterator[Rival | None]:
+    """The units' rivals after a tick; None: no reading tells of the unit."""
+    ways, links, first = found.rivals[:, :WAY].tobytes(), found.links.tobytes(), 0
+    for unit, (odds, ranged_t, told) in enumerate(found.rivals[:, WAY:].tolist()):
+        if math.isnan(told):
+            yield None
+            continue
+        last = first + int(told) * LINK_BYTES
+        yield Rival(ways[unit * WAY_BYTES : (unit + 1) * WAY_BYTES], links[first:last], odds, ranged_t)
+        first = last
 
 
 @njit(cache=True)
@@ -113,9 +131,10 @@ def update_rivals(
     starts, powers = rows[:, START].astype(np.intp), rows[:, BY_POWERS] != 0.0
     told, own = predict_pairs(table, epochs, starts, powers, seen, x)
     found, tell = np.full((len(rows), WIDTH), np.nan), np.empty((len(links) + len(told), TELLS))
-    count = 0
+    count = last = 0
     for i in range(len(rows)):
-        mine, pose_t, known_of = np.flatnonzero(told[:, UNIT] == i), rows[i, ASKED_T], rows[i, RIVAL]
+        first, last = last, last + int(rows[i, KNOWN])
+        mine, pose_t, known_of = np.flatnonzero(told[:, UNIT] == i), rows[i, ASKED_T], units.ways[i]
         if np.isnan(pose_t) or len(mine) == 0:
             continue
         readings, gains = told[mine], np.empty(len(mine))
@@ -129,18 +148,18 @@ def update_rivals(
         begun_t = t
         state, covariance, t = follow(state, known, t, readings, gains)
         until = max(t, pose_t)
-        newer = told_by_links(links[np.flatnonzero(links[:, OF] == i)][:, NUMBER], readings, gains)
+        newer = told_by_links(links[first:last], readings, gains)
         odds = odds_of(newer, until)
         believed = min(max((STIRRED - odds) / (STIRRED - CALM), 0.0), 1.0)
         share = believed * -math.expm1((begun_t - until) / AGAIN_S)
         state, known = led_by_unit(state, covariance, until - t, place_m, unsure, share)
         found[i, T], found[i, STATE], found[i, COVARIANCE], found[i, ODDS] = until, state, known, odds
-        ranged_t = -np.inf if np.isnan(known_of[T]) else known_of[RANGED]
+        ranged_t = rows[i, RANGED_T]
         # A power has an exponent, a range has none.
         found[i, RANGED] = ranged_t if (readings[:, EXPONENT] > 0.0).all() else max(t, ranged_t)
-        for row in newer:
-            tell[count, OF], tell[count, NUMBER] = i, row
-            count += 1
+        found[i, LINKS] = len(newer)
+        tell[count : count + len(newer)] = newer
+        count += len(newer)
     return RivalUpdate(len(told) > 0, found, tell[:count])
 
 

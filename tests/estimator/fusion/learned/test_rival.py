@@ -97,8 +97,8 @@ def test_who_foretells_a_range_gains_by_it() -> None:
 
 def known(*gains: float) -> Rival:
     links = np.array([(float(i), 10.0, gain) for i, gain in enumerate(gains)]).reshape(-1, 3)
-    upper = tuple(upper_of(np.eye(4)).tolist())
-    return Rival(10.0, (4.0, 0.0, 0.0, 0.0), upper, links.tobytes(), rival.odds_of(links, 10.0))
+    way = np.array([10.0, 4.0, 0.0, 0.0, 0.0, *upper_of(np.eye(4))])
+    return Rival(way.tobytes(), links.tobytes(), rival.odds_of(links, 10.0))
 
 
 def numbers(links: bytes) -> Array:

@@ -1,28 +1,21 @@
 """The rivals of units after the ranges of a tick."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from numba import njit
 
 from estimator.fusion.learned import rival
+from estimator.fusion.learned.rival import COVARIANCE, STATE, Rival, T
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.rows.prediction import predict
 from estimator.fusion.rows.rival_kernels import (
-    ASKED,
-    COVARIANCE,
-    NONE,
-    NUMBER,
+    LINKS,
     ODDS,
-    OF,
     RANGED,
-    STATE,
-    TELLS,
     RivalUpdate,
-    T,
-    Units,
-    links_of,
+    rivals_of,
     told_by_links,
     units_from,
     update_rivals,
@@ -33,7 +26,7 @@ from estimator.graph.dense import Array
 UNITS, BREADCRUMB, TECHNOLOGY = (0, 6), 3, 9
 X = np.array([1.0, 2.0, 0.0, 8.0, -3.0, 0.5, 20.0, 0.0, 0.0, 0.2, 0.01])
 POSE_T = np.array([7.5, 8.0])
-NOBODY = np.array([NONE, NONE])
+NOBODY = (None, None)
 
 
 def ranged(unit: int, link: int, range_m: float = 9.0) -> Row:
@@ -46,15 +39,12 @@ def heard(unit: int, link: int, power_dbm: float = -70.0) -> Row:
     )
 
 
-def follow(
-    *rows: Row, pose_t: Array = POSE_T, rivals: Array = NOBODY, links: Array | None = None
-) -> RivalUpdate:
+def follow(*rows: Row, pose_t: Array = POSE_T, rivals: Sequence[Rival | None] = NOBODY) -> RivalUpdate:
     table = table_of({}, [], np.array(rows, dtype=np.float64))
-    units = np.column_stack([UNITS, pose_t, np.ones(len(UNITS)), rivals])
+    units = units_from([(start, t, True) for start, t in zip(UNITS, pose_t, strict=True)], rivals)
     half = np.random.default_rng(5).normal(0.0, 1.0, (len(X), len(X)))
     seen = predict(table, half @ half.T + np.eye(11), np.zeros(11), X)
-    known = np.zeros((0, TELLS)) if links is None else links
-    return update_rivals(table, np.full(len(rows), 7.0), Units(units, known), seen, X)
+    return update_rivals(table, np.full(len(rows), 7.0), units, seen, X)
 
 
 def told(*ranges: tuple[int, float]) -> Array:
@@ -78,15 +68,16 @@ def test_units_of_one_tick_are_followed_as_each_alone() -> None:
     np.testing.assert_allclose(both.rivals[0], first.rivals[0])
     np.testing.assert_allclose(both.rivals[1], second.rivals[1])
     np.testing.assert_allclose(both.links, np.vstack([first.links, second.links]))
-    assert both.links[:, [OF, 1]].tolist() == [[0.0, 1.0], [0.0, 2.0], [1.0, 4.0]]
+    assert both.links[:, 0].tolist() == [1.0, 2.0, 4.0]
+    assert both.rivals[:, LINKS].tolist() == [2.0, 1.0]
 
 
 def test_a_rival_goes_on_from_where_it_was() -> None:
     before = follow(ranged(UNITS[0], 1))
-    after = follow(ranged(UNITS[0], 2), pose_t=POSE_T + 1.0, rivals=before.rivals, links=before.links)
+    after = follow(ranged(UNITS[0], 2), pose_t=POSE_T + 1.0, rivals=list(rivals_of(before)))
     assert after.rivals[0, T] == 8.5
-    assert after.links[:, 1].tolist() == [1.0, 2.0]
-    assert after.rivals[0, ODDS] == rival.odds_of(after.links[:, NUMBER].copy(), 8.5)
+    assert after.links[:, 0].tolist() == [1.0, 2.0]
+    assert after.rivals[0, ODDS] == rival.odds_of(after.links, 8.5)
 
 
 def test_of_whom_is_not_asked_there_is_no_rival_and_yet_he_was_heard() -> None:
@@ -97,14 +88,9 @@ def test_of_whom_is_not_asked_there_is_no_rival_and_yet_he_was_heard() -> None:
     assert not follow(ranged(UNITS[0], -1)).heard
 
 
-@njit()
-def of_a_unit(links: Array, told: Array, gains: Array) -> Array:
-    return told_by_links(links[:, NUMBER], told, gains)
-
-
 def heard_more(known: Array, told: Array, gains: list[float]) -> Array:
-    """What links tell with more readings, of a unit's part of the links of all."""
-    links: Array = of_a_unit(np.column_stack([np.zeros(len(known)), known]), told, np.array(gains))
+    """What links tell with more readings."""
+    links: Array = told_by_links(known, told, np.array(gains))
     return links
 
 
@@ -123,17 +109,24 @@ def test_links_stand_in_order_and_are_forgotten_once_they_have_long_been_silent(
 
 
 def test_it_is_known_when_a_rival_was_last_ranged_however_much_was_heard_since() -> None:
-    silent = follow(heard(UNITS[0], 1)).rivals
-    ranged_at_7 = follow(ranged(UNITS[0], 1), heard(UNITS[0], 2)).rivals
-    later = follow(heard(UNITS[0], 1), pose_t=POSE_T + 1.0, rivals=ranged_at_7).rivals
-    assert (silent[0, RANGED], ranged_at_7[0, RANGED], later[0, RANGED]) == (-math.inf, 7.0, 7.0)
+    silent = follow(heard(UNITS[0], 1))
+    ranged_at_7 = follow(ranged(UNITS[0], 1), heard(UNITS[0], 2))
+    later = follow(heard(UNITS[0], 1), pose_t=POSE_T + 1.0, rivals=list(rivals_of(ranged_at_7)))
+    assert [found.rivals[0, RANGED] for found in (silent, ranged_at_7, later)] == [-math.inf, 7.0, 7.0]
 
 
-def test_what_links_of_several_units_tell_is_theirs_again_in_the_next_tick() -> None:
+def test_rivals_of_several_units_are_theirs_again_in_the_next_tick() -> None:
     found = follow(ranged(UNITS[0], 1), ranged(UNITS[0], 2), ranged(UNITS[1], 4))
-    first, second = links_of(found)
-    assert np.frombuffer(first)[::3].tolist() == [1.0, 2.0]
-    assert np.frombuffer(second)[::3].tolist() == [4.0]
-    units = units_from([(0.0,) * ASKED] * 3, [first, b"", second])
-    assert units.links[:, OF].tolist() == [0.0, 0.0, 2.0]
-    assert np.array_equal(units.links[:, NUMBER], found.links[:, NUMBER])
+    first, second = rivals_of(found)
+    assert first is not None
+    assert second is not None
+    assert np.frombuffer(first.links)[::3].tolist() == [1.0, 2.0]
+    assert np.frombuffer(second.links)[::3].tolist() == [4.0]
+    units = units_from([(0.0, 0.0, True)] * 3, [first, None, second])
+    assert np.array_equal(units.links, found.links)
+    assert np.array_equal(units.ways[::2], found.rivals[:, : rival.WAY])
+    assert units.rows[:, -2:].tolist() == [[7.0, 2.0], [-math.inf, 0.0], [7.0, 1.0]]
+
+
+def test_of_whom_nothing_is_told_there_is_no_rival() -> None:
+    assert [one is None for one in rivals_of(follow(ranged(UNITS[1], 1)))] == [True, False]

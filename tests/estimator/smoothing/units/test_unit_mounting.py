@@ -18,7 +18,6 @@ from estimator.smoothing.units.unit_mounting import (
 from tests.estimator.smoothing.images.test_flip_ambiguity import solved_of
 from tests.estimator.trackers.test_unit_mounting import entry
 
-NOWHERE = (0.0,)
 TOLD_RAD = 0.05
 """How surely it is told in these walks what units face."""
 
@@ -30,7 +29,7 @@ def until(seconds: float, odds: float | None = None) -> Problem:
     state = problem.layout.state
     for i, walk in enumerate(problem.layout.walks):
         speaks = odds if walk.node.node == "ff2" else None
-        rival = None if speaks is None else Rival(seconds, NOWHERE, NOWHERE, b"", speaks)
+        rival = None if speaks is None else Rival(b"", b"", speaks)
         state.keep(replace(state.life(walk.number), rival=rival))
         problem.layout.walks[i] = walk._replace(node=state.life(walk.number))
     return problem
