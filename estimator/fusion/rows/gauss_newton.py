@@ -9,7 +9,7 @@ from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.rows.joint_covariance import joint, variances
 from estimator.fusion.rows.power_curvature import logarithm_error, sight_offsets
 from estimator.fusion.rows.prediction import Prediction
-from estimator.fusion.rows.range_curvature import arc_error, ranges_alike, sight_turns
+from estimator.fusion.rows.range_curvature import arc_share, ranges_alike, sight_turns
 from estimator.fusion.rows.rows import KIND, OUTLIERS, SHIFT, SIGMA, SPREAD, WIDTH, linearise
 from estimator.graph.dense import Array, Indices
 from estimator.graph.filter_kernels import scatter
@@ -66,17 +66,17 @@ def minimise(table: Array, seen: Prediction, iterations: int) -> Minimum:
     sigma, outliers = table[:, SIGMA].copy(), table[:, OUTLIERS].copy()
     shift, spread = table[:, SHIFT].copy(), table[:, SPREAD].copy()
     x, before, matrix, held = start.copy(), start.copy(), np.empty((k, k)), np.zeros(k)
+    moved = np.zeros(k)
     columns, jacobian, residual = seen.numbers.at, seen.jacobian.copy(), seen.residual.copy()
     ahead, forecast, own = np.empty((m, WIDTH)), np.empty(m), seen.own.copy()
     factor, unscale, predicted, good = np.empty((k, k)), np.empty(k), seen.predicted.copy(), np.empty(m)
     wider, information = np.zeros(m), np.zeros(m)
     if not seen.solvable:
         return Minimum(INDEFINITE, x, start, jacobian, information, residual, predicted, good, False)
-    nominal = sigma**2
     curved = widen(table, columns, jacobian, residual, x, own, wider)
     if curved:
-        sigma[:] = np.sqrt(nominal + wider)
-    cost, doubted = misfit(table, sigma, residual, x - start, held, pull), False
+        widened(table, wider, sigma)
+    cost, doubted = misfit(table, sigma, residual, moved, held, pull), False
     for iteration in range(iterations):
         if iteration > 0:
             jacobian[:] = ahead
@@ -85,7 +85,7 @@ def minimise(table: Array, seen: Prediction, iterations: int) -> Minimum:
         matrix[:] = prior
         gradient = pull - held
         scatter(matrix, gradient, columns, jacobian, information, weighted.residual)
-        if not np.isfinite(gradient).all() or not factorised(matrix, factor, unscale):
+        if not all_finite(gradient) or not factorised(matrix, factor, unscale):
             return Minimum(UNSOLVABLE, x, before, jacobian, information, residual, predicted, good, doubted)
         step = solved(factor, unscale, gradient)
         before, forecast[:] = x.copy(), residual
@@ -94,8 +94,9 @@ def minimise(table: Array, seen: Prediction, iterations: int) -> Minimum:
             # The step is halved while it makes the fit clearly worse.
             x = before + step
             linearise(table, columns, x, ahead, residual)
-            held = np.dot(prior, x - start)
-            reached = misfit(table, sigma, residual, x - start, held, pull)
+            moved = x - start
+            held = np.dot(prior, moved)
+            reached = misfit(table, sigma, residual, moved, held, pull)
             if reached <= cost + 1.0:
                 break
             step, doubted = 0.5 * step, True
@@ -114,9 +115,8 @@ def minimise(table: Array, seen: Prediction, iterations: int) -> Minimum:
             joint(factor, unscale, seen.numbers, own)
         if curved:
             widen(table, columns, ahead, residual, x, own, wider)
-            rests = rests and bool((np.abs(nominal + wider - sigma**2) <= SETTLED * sigma**2).all())
-            sigma[:] = np.sqrt(nominal + wider)
-            cost = misfit(table, sigma, residual, x - start, held, pull)
+            rests = widened(table, wider, sigma) and rests
+            cost = misfit(table, sigma, residual, moved, held, pull)
         if rests:
             break
         variances(own, ahead, predicted)
@@ -131,8 +131,37 @@ def minimise(table: Array, seen: Prediction, iterations: int) -> Minimum:
         if factorised(matrix, factor, unscale):
             joint(factor, unscale, seen.numbers, own)
             variances(own, jacobian, predicted)
-    outcome = SOLVED if np.isfinite(x).all() else UNSOLVABLE
+    outcome = SOLVED if all_finite(x) else UNSOLVABLE
     return Minimum(outcome, x, before, jacobian, information, residual, predicted, good, doubted)
+
+
+@njit(cache=True, error_model="numpy")
+def all_finite(numbers: Array) -> bool:
+    """Whether none of some numbers is infinite, or none at all."""
+    found = True
+    for i in range(len(numbers)):
+        found = found and bool(np.isfinite(numbers[i]))
+    return found
+
+
+@njit(cache=True, error_model="numpy")
+def widened(table: Array, wider: Array, sigma: Array) -> bool:
+    """Standard deviations of readings with what `widen` adds.
+
+    Args:
+        table: of m readings.
+        wider: the variances that are added, m.
+        sigma: takes the standard deviations, m.
+
+    Returns:
+        Whether they rest: none has changed by much.
+    """
+    rests = True
+    for r in range(len(table)):
+        variance = table[r, SIGMA] ** 2 + wider[r]
+        rests = rests and abs(variance - sigma[r] ** 2) <= SETTLED * sigma[r] ** 2
+        sigma[r] = np.sqrt(variance)
+    return rests
 
 
 @njit(cache=True, error_model="numpy")
@@ -161,32 +190,61 @@ def widen(
     Returns:
         Whether any is.
     """
+    first, found = 0, False
     wider[:] = 0.0
-    found = False
-    for kind in (RANGE, RSSI):
-        among = table[:, KIND] == kind
-        m = int(among.sum())
-        if m == 0:
-            continue
-        first = int(np.argmax(among))
-        own = slice(first, first + m)
-        aside, scales, turned = np.empty((m, WIDTH)), np.empty(m), np.empty(m)
-        if kind == RANGE:
-            sight_turns(table[own], columns[own], jacobian[own], residual[own], aside, scales)
-            variances(covariance[own], aside, turned)
-            each = scales**2 * arc_error(turned)
-        else:
-            along, farther = np.empty((m, WIDTH)), np.empty(m)
-            sight_offsets(columns[own], jacobian[own], x, aside, along, scales)
-            variances(covariance[own], aside, turned)
-            variances(covariance[own], along, farther)
-            each = scales**2 * logarithm_error(turned, farther)
-        minded = (BENT * table[own, SIGMA]) ** 2
-        if (m * each > minded).any():
-            each *= ranges_alike(table[own])
-            if (each > minded).any():
-                wider[own], found = each, True
+    while first < len(table):
+        kind, last = table[first, KIND], first + 1
+        while last < len(table) and table[last, KIND] == kind:
+            last += 1
+        if kind in (RANGE, RSSI):
+            own, each = slice(first, last), wider[first:last]
+            if kind == RANGE:
+                bent_ranges(table[own], columns[own], jacobian[own], residual[own], covariance[own], each)
+            else:
+                bent_powers(columns[own], jacobian[own], x, covariance[own], each)
+            if minded(table[own], each, float(last - first)):
+                each *= ranges_alike(table[own])
+            if minded(table[own], each, 1.0):
+                found = True
+            else:
+                each[:] = 0.0
+        first = last
     return found
+
+
+@njit(cache=True, error_model="numpy")
+def minded(table: Array, wider: Array, times: float) -> bool:
+    """Whether any variance that is added to readings would show, were it so many times as large."""
+    found = False
+    for r in range(len(table)):
+        found = found or times * wider[r] > (BENT * table[r, SIGMA]) ** 2
+    return found
+
+
+@njit(cache=True, error_model="numpy")
+def bent_ranges(
+    table: Array, columns: Indices, jacobian: Array, residual: Array, covariance: Array, wider: Array
+) -> None:
+    """What each of m ranges alone is widened by, see `widen`."""
+    m = len(table)
+    aside, levers_m, turned = np.empty((m, WIDTH)), np.empty(m), np.empty(m)
+    sight_turns(table, columns, jacobian, residual, aside, levers_m)
+    variances(covariance, aside, turned)
+    for r in range(m):
+        wider[r] = levers_m[r] ** 2 * arc_share(turned[r])
+
+
+@njit(cache=True, error_model="numpy")
+def bent_powers(columns: Indices, jacobian: Array, x: Array, covariance: Array, wider: Array) -> None:
+    """The same of m powers."""
+    m = len(columns)
+    aside, along, slopes_db = np.empty((m, WIDTH)), np.empty((m, WIDTH)), np.empty(m)
+    turned, farther = np.empty(m), np.empty(m)
+    sight_offsets(columns, jacobian, x, aside, along, slopes_db)
+    variances(covariance, aside, turned)
+    variances(covariance, along, farther)
+    for r in range(m):
+        wider[r] = slopes_db[r] ** 2 * logarithm_error(turned[r], farther[r])
 
 
 @njit(cache=True, error_model="numpy")

@@ -52,15 +52,14 @@ def sight_offsets(
 
 
 @njit(cache=True, error_model="numpy")
-def logarithm_error(aside: Array, farther: Array) -> Array:
+def logarithm_error(aside: float, farther: float) -> float:
     """E (½ ln ((1 + ρ)² + ψ²) − ρ)²: what the logarithm of a length is off its tangent by, squared.
 
     Of small variances v it is about ¾ v² of ψ and v² of ρ. Of a wide ψ it grows as slowly as the logarithm
     does, of a wide ρ as v: of the line nothing is left. Right within a factor of about two.
 
     Args:
-        aside: variance of ψ, over the length, m.
-        farther: variance of ρ, over the length, m.
+        aside: variance of ψ, over the length.
+        farther: variance of ρ, over the length.
     """
-    found: Array = 0.25 * np.log(1.0 + np.sqrt(3.0) * aside) ** 2 + farther**2 / (1.0 + farther)
-    return found
+    return float(0.25 * np.log(1.0 + np.sqrt(3.0) * aside) ** 2 + farther**2 / (1.0 + farther))

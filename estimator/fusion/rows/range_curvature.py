@@ -52,10 +52,20 @@ def arc_error(variance: Array) -> Array:
     3/2 − 2 exp(−v/2) + exp(−2v) / 2; of small variances it is 3/4 v².
 
     Args:
-        variance: v, … (rad²).
+        variance: v, m (rad²).
     """
-    whole = 1.5 - 2.0 * np.exp(-0.5 * variance) + 0.5 * np.exp(-2.0 * variance)
-    return np.where(variance < SMALL_RAD2, 0.75 * variance**2, whole)
+    found = np.empty(len(variance))
+    for i in range(len(variance)):
+        found[i] = arc_share(variance[i])
+    return found
+
+
+@njit(cache=True, error_model="numpy")
+def arc_share(variance: float) -> float:
+    """`arc_error` of one angle."""
+    if variance < SMALL_RAD2:
+        return 0.75 * variance**2
+    return float(1.5 - 2.0 * np.exp(-0.5 * variance) + 0.5 * np.exp(-2.0 * variance))
 
 
 @njit(cache=True, error_model="numpy")

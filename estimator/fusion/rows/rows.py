@@ -8,13 +8,13 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion.learned.receivers import LATE_NUMBER
-from estimator.fusion.memory.ledger import BEARING, RANGE, RSSI
+from estimator.fusion.memory.ledger import BEARING, RANGE
 from estimator.graph.dense import Array, Indices
 from estimator.graph.robust import Mixture
 from estimator.graph.variable import BODY, Variable
-from estimator.measurements.bearing import predict_bearing, wrap
-from estimator.measurements.range import predict_range
-from estimator.measurements.rssi import predict_rssi
+from estimator.measurements.bearing import bearing_at
+from estimator.measurements.range import range_at
+from estimator.measurements.rssi import rssi_at
 
 ONE = -1
 """Kind of a reading of one number; the others have the kinds of pairs in the ledger."""
@@ -171,51 +171,69 @@ def linearise(table: Array, columns: Indices, x: Array, jacobian: Array, residua
         jacobian: takes the derivatives, m × 9; 0 where there is no number.
         residual: takes z − h(x), m.
     """
-    m = len(table)
-    a, b, states = np.empty((m, 3)), np.empty((m, 3)), np.zeros((3, m))
-    for r in range(m):
-        for i in range(3):
-            a[r, i], b[r, i] = table[r, A_E + i], table[r, B_E + i]
-            if columns[r, i] >= 0:
-                a[r, i] += x[columns[r, i]]
-            if columns[r, 3 + i] >= 0:
-                b[r, i] += x[columns[r, 3 + i]]
-        states[0, r] = table[r, CONSTANT]
+    for r in range(len(table)):
+        kind, value = table[r, KIND], table[r, VALUE]
+        first, second, ahead = table[r, CONSTANT], 0.0, 0.0
         if columns[r, 6] >= 0:
-            states[0, r] += x[columns[r, 6]]
+            first += x[columns[r, 6]]
         if columns[r, 7] >= 0:
-            states[1, r] = x[columns[r, 7]]
+            second = x[columns[r, 7]]
         if columns[r, 8] >= 0:
-            states[2, r] = table[r, AHEAD] * x[columns[r, 8]]
-    first = 0
-    while first < m:
-        kind, last = table[first, KIND], first + 1
-        while last < m and table[last, KIND] == kind:
-            last += 1
-        own, others, one, two = a[first:last], b[first:last], states[0, first:last], states[1, first:last]
+            ahead = table[r, AHEAD] * x[columns[r, 8]]
+        for i in range(WIDTH):
+            jacobian[r, i] = 0.0
         if kind == ONE:
-            jacobian[first:last] = 0.0
-            jacobian[first:last, 0] = 1.0
-            for r in range(first, last):
-                jacobian[r, 6] = 1.0 if columns[r, 6] >= 0 else 0.0
-                jacobian[r, 7] = -table[r, B_E] if columns[r, 7] >= 0 else 0.0
-            late = table[first:last, B_E] * two
-            residual[first:last] = table[first:last, VALUE] - own[:, 0] - one + late
+            jacobian[r, 0] = 1.0
+            if columns[r, 6] >= 0:
+                jacobian[r, 6] = 1.0
+            if columns[r, 7] >= 0:
+                jacobian[r, 7] = -table[r, B_E]
+            residual[r] = value - (table[r, A_E] + x[columns[r, 0]]) - first + table[r, B_E] * second
+            continue
+        e, n, u = (
+            apart(table, columns, x, r, 0),
+            apart(table, columns, x, r, 1),
+            apart(table, columns, x, r, 2),
+        )
+        if kind == BEARING:
+            seen = bearing_at(-e, -n, first)
+            by_e, by_n, by_u, by_first, by_second = seen.by_e, seen.by_n, 0.0, -1.0, 0.0
+            off = value - seen.predicted - ahead
+            residual[r] = np.remainder(off + np.pi, 2.0 * np.pi) - np.pi
         else:
-            if kind == RANGE:
-                got = predict_range(own, others, one, two)
-            elif kind == RSSI:
-                got = predict_rssi(table[first:last, VALUE], own, others, one, two)
-            else:
-                got = predict_bearing(own, others, one)
-            off = table[first:last, VALUE] - got.predicted - states[2, first:last]
-            residual[first:last] = wrap(off) if kind == BEARING else off
-            jacobian[first:last, :3] = got.by_a
-            jacobian[first:last, 3:6] = got.by_b
-            jacobian[first:last, 6:8] = got.by_extra
-            jacobian[first:last, 8] = table[first:last, AHEAD]
-            for r in range(first, last):
-                for i in range(WIDTH):
-                    if columns[r, i] < 0:
-                        jacobian[r, i] = 0.0
-        first = last
+            squared = e * e + n * n + u * u
+            got = (
+                range_at(squared, first, second) if kind == RANGE else rssi_at(value, squared, first, second)
+            )
+            by_e, by_n, by_u = e * got.by_a, n * got.by_a, u * got.by_a
+            by_first, by_second = got.by_first, got.by_second
+            residual[r] = value - got.predicted - ahead
+        if columns[r, 0] >= 0:
+            jacobian[r, 0], jacobian[r, 1], jacobian[r, 2] = by_e, by_n, by_u
+        if columns[r, 3] >= 0:
+            jacobian[r, 3], jacobian[r, 4], jacobian[r, 5] = -by_e, -by_n, -by_u
+        if columns[r, 6] >= 0:
+            jacobian[r, 6] = by_first
+        if columns[r, 7] >= 0:
+            jacobian[r, 7] = by_second
+        if columns[r, 8] >= 0:
+            jacobian[r, 8] = table[r, AHEAD]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def apart(table: Array, columns: Indices, x: Array, r: int, axis: int) -> float:
+    """How far the end of a reading that measured is from the other one along an axis (m).
+
+    Args:
+        table: of m readings.
+        columns: which numbers each depends on, m × 9.
+        x: the estimate, n.
+        r: which reading.
+        axis: 0 to 2.
+    """
+    here, there = table[r, A_E + axis], table[r, B_E + axis]
+    if columns[r, axis] >= 0:
+        here += x[columns[r, axis]]
+    if columns[r, 3 + axis] >= 0:
+        there += x[columns[r, 3 + axis]]
+    return float(here - there)

@@ -5,7 +5,7 @@ import pytest
 
 from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.rows.power_curvature import logarithm_error, sight_offsets
-from estimator.fusion.rows.rows import B_E, EXTRA, FIELDS, KIND, VALUE, A, B, columns_of, linearise
+from estimator.fusion.rows.rows import B_E, EXTRA, FIELDS, KIND, VALUE, WIDTH, A, B, columns_of, linearise
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.measurements.rssi import Rssi
@@ -19,7 +19,7 @@ X = np.array([3.0, 4.0, 0.0, -40.0, 2.5])
 def test_the_logarithm_is_as_far_off_its_tangent_as_drawn_places_are(aside: float, farther: float) -> None:
     psi, rho = np.random.default_rng(3).normal(0.0, 1.0, (2, 200_000)) * np.sqrt([[aside], [farther]])
     drawn = np.mean((0.5 * np.log((1.0 + rho) ** 2 + psi**2) - rho) ** 2)
-    told = logarithm_error(np.array([aside]), np.array([farther]))[0]
+    told = logarithm_error(aside, farther)
     assert 0.5 * drawn < told < 2.1 * drawn
 
 
@@ -28,9 +28,9 @@ def test_a_place_leads_aside_and_farther_as_seen_from_the_radio() -> None:
     table = np.zeros((1, FIELDS))
     table[:, KIND], table[:, A], table[:, B], table[:, EXTRA] = RSSI, 0, -1, 3
     table[:, B_E], table[:, B_E + 1], table[:, VALUE] = 13.0, 4.0, -70.0
-    columns, jacobian, residual = columns_of(table), np.empty((1, 8)), np.empty(1)
+    columns, jacobian, residual = columns_of(table), np.empty((1, WIDTH)), np.empty(1)
     linearise(table, columns, X, jacobian, residual)
-    aside, farther, slopes_db = np.empty((1, 8)), np.empty((1, 8)), np.empty(1)
+    aside, farther, slopes_db = np.empty((1, WIDTH)), np.empty((1, WIDTH)), np.empty(1)
     sight_offsets(columns, jacobian, X, aside, farther, slopes_db)
     assert np.abs(aside[0, :3]) == pytest.approx([0.0, 0.1, 0.0], rel=1e-2)
     assert np.abs(farther[0, :3]) == pytest.approx([0.1, 0.0, 0.0], rel=1e-2)
