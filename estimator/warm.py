@@ -6,6 +6,7 @@ from estimator.fusion.entering.modes import UndecidedNode, costs_of, find_modes,
 from estimator.fusion.learned.gyros import prior_sigma_radps
 from estimator.fusion.learned.link_correlation import NEW
 from estimator.fusion.learned.noise import single_sigma
+from estimator.fusion.learned.reach import UNTOLD, follow
 from estimator.fusion.learned.rival import predicted
 from estimator.fusion.memory.ledger import COLUMNS
 from estimator.fusion.motion.constant_velocity import free_motion
@@ -207,7 +208,8 @@ def _warm_filter() -> None:
     rows, straight = np.arange(3)[None], np.eye(3)[None]
     graph.advance(rows, graph.reference[rows], straight, straight)
     graph.add_measurements(rows, np.ones((1, 3)), np.ones(1), np.zeros(1))
-    shown(np.zeros(1, dtype=np.intp), graph.reference, inverse(factorise(graph.information)))
+    none_loose = np.zeros(0, dtype=np.intp)
+    shown(np.zeros(1, dtype=np.intp), graph.reference, inverse(factorise(graph.information)), none_loose)
     inverted(graph.storage()[0], np.eye(3))
     swung_m2(np.zeros((1, 2, 1)), np.ones(1))
     arcs_m2(np.zeros((1, 2)), np.ones(1))
@@ -237,6 +239,7 @@ def _warm_filter() -> None:
         1,
     )
     crossings_in(table, told, newest, 0)
+    follow(np.array(UNTOLD), np.ones(1), np.ones(1), np.ones((1, len(UNTOLD))), np.ones((1, len(UNTOLD))))
     graph.add_node(Variable("unit", ""), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     step = np.array([[0.0, 3.0, *(1.0,) * 10]])
     walk(step, *graph.storage(), graph.size, np.empty(6, dtype=np.intp), np.empty((6, 6)))

@@ -2,7 +2,8 @@
 
 import math
 from bisect import bisect_left, bisect_right
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from itertools import chain
 from operator import attrgetter
 
 import numpy as np
@@ -123,7 +124,6 @@ def hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single])
         singles: what is held along with them; more is added.
     """
     until: dict[str, float] = {}
-    placed: set[str] = set()
     between: list[AnyPair] = []
     others: list[AnyHeld] = []
     for reading in readings:
@@ -133,9 +133,7 @@ def hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single])
         else:
             others.append(reading)
             until.update(dict.fromkeys(names_of(reading), reading.t))
-        if type(reading) in PLACING:
-            placed.update(names_of(reading))
-    _carry(state, until, placed)
+    _carry(state, until, readings)
     pairs = Pairs(state)
     told = pairs.fused_t
     for reading in others:
@@ -156,33 +154,41 @@ def hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single])
     epochs = np.concatenate([np.zeros(len(table) - len(rows)), pairs.epochs]) if singles else pairs.epochs
     update(state, table, epochs)
     beginnings.decide(state)
+    nodes = state.nodes
     for name, heard_t in until.items():
-        node = state.nodes.get(name)
-        if node is None or node.mode == "retired":
+        node = nodes.get(name)
+        if node is None:
+            continue
+        mode = node.mode
+        if mode == "retired":
             continue
         # What says nothing of a place leaves its fix as old as it was.
-        t = heard_t if node.mode in ("undecided", "fixed") else told.get(name, node.t)
+        t = heard_t if mode in ("undecided", "fixed") else told.get(name, -math.inf)
         if node.t < t:
-            state.nodes[name] = replace(node, t=t)
+            nodes[name] = replace(node, t=t)
 
 
-def _carry(state: FusionState, until: Mapping[str, float], placed: Collection[str]) -> None:
+def _carry(state: FusionState, until: Mapping[str, float], readings: Sequence[AnyHeld]) -> None:
     """Move nodes without newer displacements to the newest epoch at which something is held against them.
 
     Args:
         state: the fusion.
         until: that epoch, by node (s).
-        placed: of whom a range or a fix tells there.
+        readings: what is held.
     """
     drifting: dict[str, float] = {}
     silent: dict[str, float] = {}
     for name, t in until.items():
         node = state.nodes.get(name)
-        if node is not None and node.mode == "free":
+        mode = None if node is None else node.mode
+        if node is None or mode == "static":
+            continue
+        if mode == "free":
             drifting[name] = t
-        elif node is not None and node.mode == "unit" and t > node.pose_t + SAME_EPOCH_S:
+        elif mode == "unit" and t > node.pose_t + SAME_EPOCH_S:
             silent[name] = t
     if drifting:
         move_free(state, drifting)
     if silent:
-        drift_units(state, silent, placed=placed)
+        placing = (names_of(reading) for reading in readings if type(reading) in PLACING)
+        drift_units(state, silent, placed=set(chain.from_iterable(placing)))

@@ -1,5 +1,7 @@
 """What leaves the fusion: estimates of every node, and the position of one relative to another."""
 
+import math
+
 import numpy as np
 from numba import njit
 
@@ -13,13 +15,11 @@ from estimator.fusion.learned.calibration import doubt
 from estimator.fusion.learned.delays import Suspicion
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.motion.heading_arcs import loose_headings, swung_m2
+from estimator.fusion.motion.heading_arcs import loose_headings, swung_m2, swung_most_m2
 from estimator.graph.dense import Array, Indices
 from estimator.graph.variable import BODY, Variable
 from estimator.measurements.bearing import within_pi
 
-TRIANGLE = [0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]
-"""Rows and columns of a covariance, 3 × 3, in the order in which `shown` tells it behind a place."""
 NOTHING = 1e-3
 """What a doubt adds to the variance of a scale, as a share of it, that is not seen in any place."""
 MOVING_MPS = 0.3
@@ -41,10 +41,10 @@ def covariance_of(state: FusionState) -> Array:
     for name, receiver in state.receivers.items():
         told += [(graph.starts[Variable("receiver", name)], *doubt) for doubt in receiver.doubts]
     elsewhere = [(_along(found, start, own), moment) for start, own, moment in told]
-    judged = [(Variable("range", name), 0, known) for name, known in state.calibrations.items()]
-    judged += [(technology_variable(name), BODY, known) for name, known in state.bodies.items()]
-    for variable, number, known in judged:
-        start = graph.starts.get(variable)
+    judged = [(name, 0, known) for name, known in state.calibrations.items()]
+    judged += [(name, BODY, known) for name, known in state.bodies.items()]
+    for name, number, known in judged:
+        start = graph.starts.get(technology_variable(name))
         if start is not None:
             row = start + number
             variance = float(found[row, row])
@@ -125,15 +125,13 @@ def estimates(state: FusionState, covariance: Array) -> list[NodeEstimate]:
         covariance: see `covariance_of`, n × n.
     """
     graph = state.graph
-    held = [node for node in state.nodes.values() if node.place_m is None and node.decided]
-    starts = np.array([graph.starts[node.position] for node in held], dtype=np.intp)
-    told = shown(starts, graph.reference, covariance)
-    loose = loose_headings(state, covariance)
-    if loose:
-        across = covariance[(starts[:, None] + np.arange(3))[:, :, None], loose]
-        told[:, 3:] += swung_m2(across, covariance[loose, loose])[:, *TRIANGLE]
-    found = {node.node: place for node, place in zip(held, told.tolist(), strict=True)}
-    return [_estimate(state, node, covariance, found.get(node.node)) for node in state.nodes.values()]
+    loose = np.array(loose_headings(state, covariance), dtype=np.intp)
+    told = shown(graph.firsts("position"), graph.reference, covariance, loose).tolist()
+    numbers, found = graph.numbers("position"), list[NodeEstimate]()
+    for node in state.nodes.values():
+        number = numbers.get(node.position)
+        found.append(_estimate(state, node, covariance, None if number is None else told[number]))
+    return found
 
 
 def estimate_of(state: FusionState, name: str) -> NodeEstimate | None:
@@ -145,13 +143,14 @@ def estimate_of(state: FusionState, name: str) -> NodeEstimate | None:
 
 
 @njit(cache=True)
-def shown(starts: Indices, x: Array, covariance: Array) -> Array:
+def shown(starts: Indices, x: Array, covariance: Array, loose: Indices) -> Array:
     """Places and their covariances, m × 9: e, n, u (m); ee, en, eu, nn, nu, uu (m²).
 
     Args:
         starts: first row of the block of each place, m.
         x: the reference of the graph, n.
         covariance: Σ of it, n × n.
+        loose: rows of the headings along whose arcs places swing, see `heading_arcs.loose_headings`.
     """
     found = np.empty((len(starts), 9))
     for i in range(len(starts)):
@@ -161,6 +160,20 @@ def shown(starts: Indices, x: Array, covariance: Array) -> Array:
             for c in range(r, 3):
                 found[i, after] = covariance[at + r, at + c]
                 after += 1
+    if len(loose) > 0:
+        across, variance = np.empty((len(starts), 3, len(loose))), np.empty(len(loose))
+        for h in range(len(loose)):
+            variance[h] = covariance[loose[h], loose[h]]
+            for i in range(len(starts)):
+                for r in range(3):
+                    across[i, r, h] = covariance[starts[i] + r, loose[h]]
+        swung = swung_most_m2(across, variance)
+        for i in range(len(starts)):
+            after = 3
+            for r in range(3):
+                for c in range(r, 3):
+                    found[i, after] += swung[i, r, c]
+                    after += 1
     return found
 
 
@@ -200,7 +213,7 @@ def _heading(state: FusionState, node: NodeState, covariance: Array) -> tuple[fl
     """The unit's reported heading plus ψ; else the direction of its way."""
     if node.mode == "unit":
         start = state.graph.starts[node.unit]
-        psi, sigma = float(state.graph.reference[start]), float(np.sqrt(covariance[start, start]))
+        psi, sigma = float(state.graph.reference[start]), math.sqrt(covariance[start, start])
         if node.unit_heading_rad is not None:
             return within_pi(node.unit_heading_rad + psi), sigma
         if len(node.trail) > 1 and (node.speed_mps or 0.0) > MOVING_MPS:

@@ -45,6 +45,7 @@ class Kirchhoff:
         self.starts: dict[Variable, int] = {}
         self.size = 0
         self._firsts: dict[VariableKind, Indices] = {}
+        self._numbers: dict[VariableKind, dict[Variable, int]] = {}
         self._turning: Turning | None = None
         self._matrix: Array = np.zeros((capacity, capacity))
         self._vector: Array = np.zeros(capacity)
@@ -115,6 +116,14 @@ class Kirchhoff:
             found = self._firsts[kind] = np.array(rows, dtype=np.intp)
         return found
 
+    def numbers(self, kind: VariableKind) -> dict[Variable, int]:
+        """Which of `firsts` each block of a kind is; not to be changed."""
+        found = self._numbers.get(kind)
+        if found is None:
+            blocks = [variable for variable in self.starts if variable.kind == kind]
+            found = self._numbers[kind] = {variable: number for number, variable in enumerate(blocks)}
+        return found
+
     def turning(self) -> Turning:
         """Which numbers change when the map is turned as a whole; not to be changed."""
         if self._turning is None:
@@ -127,7 +136,7 @@ class Kirchhoff:
         """An independent copy."""
         twin = object.__new__(type(self))
         twin.starts, twin.size = self.starts, self.size
-        twin._firsts, twin._turning = self._firsts, self._turning
+        twin._firsts, twin._numbers, twin._turning = self._firsts, self._numbers, self._turning
         twin._matrix, twin._vector = self._matrix.copy(), self._vector.copy()
         twin._reference = self._reference.copy()
         return twin
@@ -156,7 +165,8 @@ class Kirchhoff:
         self._reference[start:end] = reference
         self._matrix[range(start, end), range(start, end)] = [s**-2 for s in sigma]
         self.starts = {**self.starts, variable: start}
-        self.size, self._firsts, self._turning = end, {}, None
+        self.size = end
+        self._firsts, self._numbers, self._turning = {}, {}, None
 
     def _grow(self, capacity: int) -> None:
         n = self.size
@@ -198,7 +208,8 @@ class Kirchhoff:
         gone_set = set(variables)
         start = 0
         remaining = [v for v in self.starts if v not in gone_set]
-        self.starts, self._firsts, self._turning = {}, {}, None
+        self.starts = {}
+        self._firsts, self._numbers, self._turning = {}, {}, None
         for v in remaining:
             self.starts[v] = start
             start += DIMENSION[v.kind]

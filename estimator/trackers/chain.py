@@ -107,7 +107,7 @@ def found_m(before: FusionState, after: FusionState) -> float:
         before: the state before the tick.
         after: the state after it.
     """
-    farthest_m = 0.0
+    farthest_m, here, there = 0.0, after.graph.reference, before.graph.reference
     for name, node in after.nodes.items():
         if node.mode != "unit":
             continue
@@ -115,8 +115,12 @@ def found_m(before: FusionState, after: FusionState) -> float:
         if was is None or was.mode != "unit":
             continue
         at, now = before.graph.starts[was.position], after.graph.starts[node.position]
-        east, north = after.graph.reference[now : now + 2] - before.graph.reference[at : at + 2]
-        off_m = float(np.hypot(east, north)) - (node.way_m - was.way_m)
+        east, north = float(here[now] - there[at]), float(here[now + 1] - there[at + 1])
+        walked_m = node.way_m - was.way_m
+        # No way is longer than both its sides.
+        if abs(east) + abs(north) - walked_m <= JOLT_M:
+            continue
+        off_m = float(np.hypot(east, north)) - walked_m
         if off_m > max(JOLT_M, farthest_m):
             unsure_m2 = np.trace(before.graph.covariance()[at : at + 2, at : at + 2])
             farthest_m = off_m if unsure_m2 > JOLT_M**2 else farthest_m

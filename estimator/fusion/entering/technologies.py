@@ -20,7 +20,7 @@ REACH = UNTOLD_POWER + "reach"
 
 def technology_states(state: FusionState, technology: str) -> Variable:
     """The block of scale, bias and bodies of a ranging technology, added when first used."""
-    states = Variable("range", technology)
+    states = technology_variable(technology)
     if states not in state.graph:
         state.graph.add_node(states, (0.0, 0.0, 0.0), ranging_sigma(state, technology))
     return states
@@ -40,15 +40,16 @@ def path_loss_states(state: FusionState, technology: str) -> Variable:
     return states
 
 
+@lru_cache(maxsize=256)
 def technology_variable(technology: str) -> Variable:
-    """The key of the block of a technology, of ranges or of powers."""
+    """The key of the block of a technology, of ranges or of powers: each tick asks for it several times."""
     powers = technology.startswith(UNTOLD_POWER)
     return path_loss_variable(technology) if powers else Variable("range", technology)
 
 
 @lru_cache(maxsize=256)
 def path_loss_variable(technology: str) -> Variable:
-    """The key of the block of a technology of signals: each tick asks for it several times."""
+    """The key of the block of a technology of signals: the same."""
     return Variable("rssi", technology[len(UNTOLD_POWER) :])
 
 

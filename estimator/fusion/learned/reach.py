@@ -11,11 +11,13 @@ hierarchical models").
 import math
 from bisect import bisect_left
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Self
 
 import msgspec
 import numpy as np
 from msgspec.structs import replace
+from numba import njit
 
 from estimator.graph.dense import Array
 from estimator.measurements.rssi import DB_PER_NEPER
@@ -29,6 +31,8 @@ SPREADS_DB2 = (np.geomspace(0.02, 0.6, 9) * EXPONENT * DB_PER_NEPER) ** 2
 LOGARITHMS = np.log(SPREADS_DB2)
 """Variances that stand for all, and their logarithms: reaches that differ by 2 % to 60 %. Sharper than half
 of a step's length at 25 m none can be told."""
+UNTOLD = (0.0,) * len(SPREADS_DB2)
+"""Their log likelihoods where no crossing has told."""
 NOMINAL_DB = 3.0
 """The unit in which the noise of a crossing is written down before it is learned."""
 SHARED = 0.9
@@ -69,12 +73,11 @@ class Reach(msgspec.Struct, frozen=True, array_like=True):
     @property
     def sigma_db(self) -> float:
         """By how much reaches differ (dB), in the mean of its logarithm."""
-        weight = np.exp(self._logs - self._logs.max())
-        return math.exp(0.5 * float((weight * LOGARITHMS).sum() / weight.sum()))
+        return mean_sigma_db(self.logs or UNTOLD)
 
     @property
     def _logs(self) -> Array:
-        return np.array(self.logs or (0.0,) * len(SPREADS_DB2))
+        return np.array(self.logs or UNTOLD)
 
     def with_packets(self, heard: int, lost: int) -> Self:
         """What is known after more packets."""
@@ -88,18 +91,43 @@ class Reach(msgspec.Struct, frozen=True, array_like=True):
             variance_db2: of what was predicted of each (dB²).
         """
         spread, squared = np.array(variance_db2)[:, None] + SPREADS_DB2, [off**2 for off in off_db]
-        good = math.log(1.0 - OUTLIERS) - 0.5 * (np.array(squared)[:, None] / spread + np.log(spread))
-        wide = [variance + OUTLIER_DB2 for variance in variance_db2]
-        odd = [
-            math.log(OUTLIERS) - 0.5 * (off2 / total + math.log(total))
-            for off2, total in zip(squared, wide, strict=True)
-        ]
-        logs = self._logs.tolist()
-        for told in np.logaddexp(good, np.array(odd)[:, None]).tolist():
-            logs = [known + more for known, more in zip(logs, told, strict=True)]
-            likeliest = max(logs)
-            logs = [log - likeliest for log in logs]
-        return replace(self, logs=tuple(logs))
+        logs = self._logs
+        follow(logs, np.array(squared), np.array(variance_db2), spread, np.log(spread))
+        return replace(self, logs=tuple(logs.tolist()))
+
+
+@njit(cache=True)
+def follow(logs: Array, squared: Array, variance: Array, spread: Array, log_spread: Array) -> None:
+    """Hold crossings against each spread of reaches, one after the other.
+
+    Args:
+        logs: log likelihood of each spread less the largest, changed.
+        squared: the square of what each crossing is off by, k (dB²).
+        variance: of what was predicted of it, k (dB²).
+        spread: the same with each spread's own, k × spreads (dB²).
+        log_spread: logarithms of these.
+    """
+    for r in range(len(squared)):
+        wide = variance[r] + OUTLIER_DB2
+        odd = math.log(OUTLIERS) - 0.5 * (squared[r] / wide + math.log(wide))
+        likeliest = -np.inf
+        for i in range(len(logs)):
+            good = math.log(1.0 - OUTLIERS) - 0.5 * (squared[r] / spread[r, i] + log_spread[r, i])
+            logs[i] += np.logaddexp(good, odd)
+            likeliest = max(likeliest, logs[i])
+        for i in range(len(logs)):
+            logs[i] -= likeliest
+
+
+@lru_cache(maxsize=64)
+def mean_sigma_db(logs: tuple[float, ...]) -> float:
+    """The standard deviation of reaches, in the mean of its logarithm (dB): each tick asks for it twice.
+
+    Args:
+        logs: log likelihood of each of `SPREADS_DB2` less the largest.
+    """
+    weight = np.exp(np.array(logs) - max(logs))
+    return math.exp(0.5 * float(np.add.reduce(weight * LOGARITHMS) / np.add.reduce(weight)))
 
 
 def in_metres(level_db: float, off_db: float, sigma_db: float) -> tuple[float, float, float]:

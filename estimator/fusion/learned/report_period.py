@@ -82,7 +82,10 @@ class Cadence(msgspec.Struct, frozen=True, array_like=True, gc=False):
         t = told.t
         spans = (*self.spans_s, t - self.recent[-1].t)[-SPANS:] if self.recent else ()
         stood = self.stood + 1 if still else 0
-        recent = (*(r for r in self.recent if r.t >= t - RECENT_S), told)[-RECENT:]
+        old = 0
+        while old < len(self.recent) and self.recent[old].t < t - RECENT_S:
+            old += 1
+        recent = (*self.recent[old:], told)[-RECENT:]
         odds = min(max(self.losing + losing, -ODDS_MOST), ODDS_MOST)
         return type(self)(spans, recent, stood, self.stands or stood >= STANDS, odds)
 

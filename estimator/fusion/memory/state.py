@@ -125,7 +125,7 @@ class FusionState:
     def copy(self) -> Self:
         """An independent copy, without this tick's notices."""
         twin = object.__new__(type(self))
-        twin.__dict__.update(self.__dict__)
+        twin.__dict__ = self.__dict__.copy()
         twin.graph, twin.ledger = self.graph.copy(), self.ledger.copy()
         twin.nodes, twin.links, twin.sightings = dict(self.nodes), self.links.copy(), dict(self.sightings)
         twin.noise, twin.calibrations = dict(self.noise), dict(self.calibrations)

@@ -19,6 +19,7 @@ from estimator.fusion.rows.rows import EXTRA, KIND, LINK, SIGMA
 from estimator.graph.dense import Array
 from estimator.measurements.rssi import Rssi
 
+NEW = Listener()
 TELLING = ("unit", "static", "fixed")
 """How those move of whom it is known where they were between two seconds."""
 
@@ -36,21 +37,20 @@ def hear(state: FusionState, readings: Sequence[Rssi]) -> list[Crossing]:
     if not readings:
         return []
     heard: dict[int, dict[str, dict[str, float]]] = {}
-    listening, tick_t = dict[str, dict[str, float]](), math.nan
+    listening, now = dict[str, dict[str, float]](), dict[str, float]()
+    before_t, before = math.nan, ""
     for reading in readings:
         t, name = reading.t, reading.a
-        if t != tick_t:
-            listening, tick_t = heard.setdefault(tick_of(t), {}), t
-        now = listening.get(name)
-        if now is None:
-            listening[name] = {reading.b: t}
-        else:
-            now[reading.b] = t
+        if t != before_t:
+            listening, before_t, before = heard.setdefault(tick_of(t), {}), t, ""
+        if name != before:
+            now, before = listening.setdefault(name, {}), name
+        now[reading.b] = t
     crossings: list[Crossing] = []
     silent, packets, lost = state.reach.silent, 0, 0
     for listening in heard.values():
         for name, now in listening.items():
-            told = listen(name, state.listeners.get(name, Listener()), now, silent or reach.MOST_SILENT)
+            told = listen(name, state.listeners.get(name, NEW), now, silent or reach.MOST_SILENT)
             state.listeners[name] = told.listener
             packets, lost = packets + told.heard, lost + told.lost
             crossings += told.crossings

@@ -30,6 +30,7 @@ from estimator.measurements.node import MOVING_ROLES
 from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
 
+NO_ROWS = np.empty((0, FIELDS))
 AnyPair = Range | Rssi | Bearing | Crossing
 
 
@@ -79,9 +80,8 @@ class Pairs:
             t, name_a, name_b = reading.t, reading.a, reading.b
             a = named.get(name_a) or self._name(name_a, t)
             b = named.get(name_b) or self._name(name_b, t)
-            between = a.decided and b.decided
-            crossing = type(reading) is Crossing
-            if not between and (crossing or not self._sights(a.node, b.node, reading)):
+            between, crossing = a.decided and b.decided, False
+            if not between and not self._sights(a.node, b.node, reading):
                 continue
             if between and a.fixed and b.fixed:
                 state.count("not_fused")
@@ -92,7 +92,7 @@ class Pairs:
                 if reading.tx_dbm is not None:
                     source, constant = TOLD_POWER, reading.tx_dbm
             elif isinstance(reading, Crossing):
-                kind, source, value, sigma = RSSI, REACH, 0.0, reach.NOMINAL_DB
+                kind, source, value, sigma, crossing = RSSI, REACH, 0.0, reach.NOMINAL_DB, True
             elif isinstance(reading, Range):
                 kind, source, value = RANGE, reading.technology or "unnamed", reading.range_m
                 usual = physics.RANGE_SIGMA_M.get(source, physics.RANGE_SIGMA_OTHER_M)
@@ -104,8 +104,8 @@ class Pairs:
                     fused += 1
                     fused_t[name_a] = fused_t[name_b] = t
                 continue
-            if kind == RANGE and "unit" in (a.node.mode, b.node.mode):
-                state.calibrations.setdefault(source, Calibration())
+            if kind == RANGE and source not in state.calibrations and "unit" in (a.node.mode, b.node.mode):
+                state.calibrations[source] = Calibration()
             technology = numbers.get(source)
             if technology is None:
                 technology = self._technology(kind, source, between)
@@ -126,7 +126,7 @@ class Pairs:
             Rows of the readings between decided nodes, m × `FIELDS`; see `rows.Row`.
         """
         if not self._told:
-            return np.empty((0, FIELDS))
+            return NO_ROWS
         state = self._state
         made = pair_rows(
             np.fromiter(self._told, np.float64, len(self._told)).reshape(-1, PAIR),
@@ -150,6 +150,8 @@ class Pairs:
     def _sights(self, a: NodeState, b: NodeState, reading: AnyPair) -> bool:
         """Whether a reading tells where an undecided node is; if so, it is counted for it."""
         state = self._state
+        if isinstance(reading, Crossing):
+            return False
         if "retired" in (a.mode, b.mode):
             node, other = (a, b) if a.mode == "retired" else (b, a)
             text = f"{node.node} is retired: what {other.node} measures to it is set aside"

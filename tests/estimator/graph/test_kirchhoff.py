@@ -198,10 +198,13 @@ def test_the_first_rows_of_a_kind_of_blocks_follow_what_enters_and_leaves() -> N
         graph.add_node(Variable("unit", name), np.zeros(3), (1.0,) * 3)
     assert graph.firsts("unit").tolist() == [3, 9]
     twin = graph.copy()
+    assert twin.numbers("position") == {node("a"): 0, node("b"): 1}
     twin.delete_nodes([node("a")])
     assert twin.firsts("unit").tolist() == [0, 6]
+    assert twin.numbers("position") == {node("b"): 0}
     graph.add_node(Variable("unit", "c"), np.zeros(3), (1.0,) * 3)
     assert graph.firsts("unit").tolist() == [3, 9, 12]
+    assert list(graph.numbers("unit")) == [Variable("unit", name) for name in "abc"]
     assert twin.firsts("unit").tolist() == [0, 6]
     assert graph.firsts("velocity").tolist() == []
 
