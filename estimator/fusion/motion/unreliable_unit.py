@@ -57,15 +57,15 @@ def ask(state: FusionState, table: Array) -> QuestionedUnits:
     powers = _asked_by_powers(state, nodes)
     if not any(powers) and not (table[:, KIND] == RANGE).any():
         return NOBODY
-    asked_t = [node.pose_t if _asked(node) else math.nan for node in nodes]
+    starts, asked_t, rows, some = state.graph.starts, list[float](), list[tuple[float, float, bool]](), False
+    for node, by_powers in zip(nodes, powers, strict=True):
+        asked = _asked(node)
+        asked_t.append(node.pose_t if asked else math.nan)
+        rows.append((starts[node.position], asked_t[-1], by_powers))
+        some = some or asked or node.rival is not None
     # Where nobody is asked about there is something to do only for who was.
-    if all(map(math.isnan, asked_t)) and all(node.rival is None for node in nodes):
+    if not some:
         return NOBODY
-    starts = state.graph.starts
-    rows = [
-        (starts[node.position], t, by_powers)
-        for node, t, by_powers in zip(nodes, asked_t, powers, strict=True)
-    ]
     return QuestionedUnits(nodes, asked_t, units_from(rows, [node.rival for node in nodes]))
 
 
@@ -106,18 +106,15 @@ def _asked(node: NodeState) -> bool:
 def _asked_by_powers(state: FusionState, units: list[NodeState]) -> list[bool]:
     """Of which units powers are asked; a rival that only powers told of is forgotten where they are not."""
     known = [noise for name, noise in state.noise.items() if name.startswith(UNTOLD_POWER)]
-    if not known:
-        return [False] * len(units)
-    unranged = [node.rival is None or node.pose_t > node.rival.ranged_t + MEMORY_S for node in units]
-    if not any(unranged):
-        return unranged
-    odd = any(map(_odd, known))
-    powers = [
-        one and (odd or (node.rival is not None and node.rival.odds > RARE + SPOKEN))
-        for one, node in zip(unranged, units, strict=True)
-    ]
-    for i, node in enumerate(units):
-        if node.rival is not None and math.isinf(node.rival.ranged_t) and not powers[i]:
+    powers, odd = [False] * len(units), None
+    for i, node in enumerate(units if known else ()):
+        rival = node.rival
+        if rival is not None and node.pose_t <= rival.ranged_t + MEMORY_S:
+            continue
+        if odd is None:
+            odd = any(map(_odd, known))
+        powers[i] = odd or (rival is not None and rival.odds > RARE + SPOKEN)
+        if rival is not None and math.isinf(rival.ranged_t) and not powers[i]:
             state.nodes[node.node] = units[i] = replace(node, rival=None)
     return powers
 

@@ -126,12 +126,18 @@ def variances(own: Array, jacobian: Array, found: Array) -> None:
         found: takes the variances, m.
     """
     for r in range(len(found)):
-        total = 0.0
-        for i in range(WIDTH):
-            if jacobian[r, i] != 0.0:
-                half = 0.5 * jacobian[r, i] * own[r, i, i]
-                for j in range(i):
-                    if jacobian[r, j] != 0.0:
-                        half += jacobian[r, j] * own[r, i, j]
-                total += 2.0 * jacobian[r, i] * half
-        found[r] = max(total, 0.0)
+        found[r] = variance(own, jacobian, r)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def variance(own: Array, jacobian: Array, r: int) -> float:
+    """The same of reading `r` alone."""
+    total = 0.0
+    for i in range(WIDTH):
+        if jacobian[r, i] != 0.0:
+            half = 0.5 * jacobian[r, i] * own[r, i, i]
+            for j in range(i):
+                if jacobian[r, j] != 0.0:
+                    half += jacobian[r, j] * own[r, i, j]
+            total += 2.0 * jacobian[r, i] * half
+    return max(total, 0.0)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from estimator.fusion.learned import rival
 from estimator.fusion.learned.rival import TOLD
 from estimator.fusion.memory.ledger import RANGE, RSSI
-from estimator.fusion.rows.joint_covariance import variances
+from estimator.fusion.rows.joint_covariance import variance
 from estimator.fusion.rows.prediction import Prediction
 from estimator.fusion.rows.rows import (
     A_E,
@@ -64,49 +64,42 @@ def predict_pairs(
     place = np.full(len(x) + 1, -1)
     for i in range(len(units)):
         place[units[i]] = i
-    chosen, unit = np.zeros(len(table), dtype=np.bool_), np.zeros(len(table), dtype=np.intp)
-    for r in range(len(table)):
-        if (table[r, KIND] == RANGE or table[r, KIND] == RSSI) and table[r, LINK] >= 0:
-            a, b = place[int(table[r, A])], place[int(table[r, B])]
-            unit[r] = max(a, b)
-            chosen[r] = (a >= 0) != (b >= 0) and (
-                table[r, KIND] == RANGE or (powers[unit[r]] and table[r, EXTRA] >= 0)
-            )
-    some = np.flatnonzero(chosen)
-    if len(some) == 0 or not seen.solvable:
-        return PredictedPairs(found[:0], own)
-    some = some[np.argsort(epochs[some], kind="mergesort")]
-    rows, m, columns, covariance = table[some], len(some), seen.columns[some], seen.own[some]
-    jacobian, residual, rest = seen.jacobian[some], seen.residual[some], np.empty(m)
-    for k in range(m):
-        r = some[k]
-        by_a = place[int(rows[k, A])] >= 0
-        near, far = (0, 3) if by_a else (3, 0)
-        near_m, far_m = (A_E, B_E) if by_a else (B_E, A_E)
-        jacobian[k, near : near + 3] = 0.0
-        own[unit[r]] = covariance[k, near : near + 2, near : near + 2]
+    count, jacobian = 0, seen.jacobian.copy()
+    for r in np.argsort(epochs, kind="mergesort"):
+        kind, a, b = table[r, KIND], place[int(table[r, A])], place[int(table[r, B])]
+        if kind not in (RANGE, RSSI) or table[r, LINK] < 0 or (a >= 0) == (b >= 0) or not seen.solvable:
+            continue
+        unit, told = max(a, b), found[count]
+        if kind == RSSI and not (powers[unit] and table[r, EXTRA] >= 0):
+            continue
+        near, far = (0, 3) if a >= 0 else (3, 0)
+        near_m, far_m = (A_E, B_E) if a >= 0 else (B_E, A_E)
         squared = 0.0
         for axis in range(3):
-            here, there = rows[k, near_m + axis], rows[k, far_m + axis]
-            if columns[k, near + axis] >= 0:
-                here += x[columns[k, near + axis]]
-            if columns[k, far + axis] >= 0:
-                there += x[columns[k, far + axis]]
+            here, there = table[r, near_m + axis], table[r, far_m + axis]
+            if seen.columns[r, near + axis] >= 0:
+                here += x[seen.columns[r, near + axis]]
+            if seen.columns[r, far + axis] >= 0:
+                there += x[seen.columns[r, far + axis]]
             squared += (here - there) ** 2
-            found[k, rival.EAST + axis] = there if axis < 2 else here - there
-        found[k, rival.UNIT], found[k, rival.LINK], found[k, rival.EPOCH] = unit[r], rows[k, LINK], epochs[r]
+            told[rival.EAST + axis] = there if axis < 2 else here - there
+            jacobian[r, near + axis] = 0.0
+        for i in range(2):
+            for j in range(2):
+                own[unit, i, j] = seen.own[r, near + i, near + j]
+        told[rival.UNIT], told[rival.LINK], told[rival.EPOCH] = unit, table[r, LINK], epochs[r]
         # What it would be without the technology's states, to first order.
-        if rows[k, KIND] == RANGE:
-            found[k, rival.READ], found[k, rival.EXPONENT] = np.sqrt(squared) + residual[k], 0.0
-            found[k, rival.SIGMA] = min(rows[k, SIGMA], NOISIER * rows[k, NOMINAL])
+        if kind == RANGE:
+            told[rival.READ], told[rival.EXPONENT] = np.sqrt(squared) + seen.residual[r], 0.0
+            told[rival.SIGMA] = min(table[r, SIGMA], NOISIER * table[r, NOMINAL])
         else:
-            exponent = x[columns[k, EXPONENT]]
+            exponent = x[seen.columns[r, EXPONENT]]
             by_way = rssi_at(-np.inf, squared, 0.0, exponent).predicted
-            found[k, rival.READ], found[k, rival.EXPONENT] = by_way + residual[k], exponent
+            told[rival.READ], told[rival.EXPONENT] = by_way + seen.residual[r], exponent
             # A bad unit makes all errors alike: powers would be worth nothing.
-            found[k, rival.SIGMA] = rows[k, NOMINAL]
-        found[k, rival.OUTLIERS] = min(rows[k, OUTLIERS], rival.OBSTRUCTED)
-        found[k, rival.OFF], found[k, rival.UNSURE] = residual[k], seen.predicted[r]
-    variances(covariance, jacobian, rest)
-    found[:m, rival.REST] = rest
-    return PredictedPairs(found[:m], own)
+            told[rival.SIGMA] = table[r, NOMINAL]
+        told[rival.OUTLIERS] = min(table[r, OUTLIERS], rival.OBSTRUCTED)
+        told[rival.OFF], told[rival.UNSURE] = seen.residual[r], seen.predicted[r]
+        told[rival.REST] = variance(seen.own, jacobian, r)
+        count += 1
+    return PredictedPairs(found[:count], own)

@@ -15,6 +15,7 @@ from estimator.fusion.learned.rival import (
     LINK,
     MEMORY_S,
     STATE,
+    TOLD,
     UNIT,
     WAY,
     Rival,
@@ -93,8 +94,8 @@ def units_from(rows: Sequence[tuple[float, float, bool]], rivals: Sequence[Rival
     # Of an array that must not be written numba looks up the type anew with each call.
     return Units(
         np.array(told, dtype=np.float64).reshape(-1, ASKED),
-        np.frombuffer(bytearray().join(ways)).reshape(-1, WAY),
-        np.frombuffer(bytearray().join(links)).reshape(-1, TELLS),
+        np.ndarray((len(ways), WAY), np.float64, bytearray().join(ways)),
+        np.ndarray((sum(map(len, links)) // LINK_BYTES, TELLS), np.float64, bytearray().join(links)),
     )
 
 
@@ -132,12 +133,20 @@ def update_rivals(
     told, own = predict_pairs(table, epochs, starts, powers, seen, x)
     found, tell = np.full((len(rows), WIDTH), np.nan), np.empty((len(links) + len(told), TELLS))
     count = last = 0
+    mine = np.empty(told.shape)
     for i in range(len(rows)):
         first, last = last, last + int(rows[i, KNOWN])
-        mine, pose_t, known_of = np.flatnonzero(told[:, UNIT] == i), rows[i, ASKED_T], units.ways[i]
-        if np.isnan(pose_t) or len(mine) == 0:
+        heard, powers_alone, pose_t, known_of = 0, True, rows[i, ASKED_T], units.ways[i]
+        for r in range(len(told)):
+            if told[r, UNIT] == i:
+                for c in range(TOLD):
+                    mine[heard, c] = told[r, c]
+                # A power has an exponent, a range has none.
+                powers_alone = powers_alone and told[r, EXPONENT] > 0.0
+                heard += 1
+        if np.isnan(pose_t) or heard == 0:
             continue
-        readings, gains = told[mine], np.empty(len(mine))
+        readings, gains = mine[:heard], np.empty(heard)
         place_m, unsure = x[starts[i] : starts[i] + 2].copy(), own[i]
         if np.isnan(known_of[T]):
             t, state, upper = min(readings[0, EPOCH], pose_t), np.zeros(4), np.eye(4)
@@ -155,8 +164,7 @@ def update_rivals(
         state, known = led_by_unit(state, covariance, until - t, place_m, unsure, share)
         found[i, T], found[i, STATE], found[i, COVARIANCE], found[i, ODDS] = until, state, known, odds
         ranged_t = rows[i, RANGED_T]
-        # A power has an exponent, a range has none.
-        found[i, RANGED] = ranged_t if (readings[:, EXPONENT] > 0.0).all() else max(t, ranged_t)
+        found[i, RANGED] = ranged_t if powers_alone else max(t, ranged_t)
         found[i, LINKS] = len(newer)
         tell[count : count + len(newer)] = newer
         count += len(newer)
@@ -186,5 +194,13 @@ def told_by_links(known: Array, told: Array, gains: Array) -> Array:
         count = max(count, at + 1)
         gain = min(max(kept + tells * gains[r], rival.LEAST), rival.MOST)
         found[at, 0], found[at, 1], found[at, 2] = told[r, LINK], told[r, EPOCH], gain
-    lately = np.flatnonzero(found[:count, 1] > newest_t - MEMORY_S)
-    return found[lately[np.argsort(found[lately, 0], kind="mergesort")]]
+    lately, ordered = 0, np.empty((count, 3))
+    for k in range(count):
+        if found[k, 1] > newest_t - MEMORY_S:
+            at = lately
+            while at > 0 and ordered[at - 1, 0] > found[k, 0]:
+                ordered[at] = ordered[at - 1]
+                at -= 1
+            ordered[at] = found[k]
+            lately += 1
+    return ordered[:lately]
