@@ -34,6 +34,8 @@ HELD = (*PAIRS, Position, Altitude, Pressure, Drop)
 """The commonest first: that a reading is of a kind is told at once, that it is of none of several is not."""
 PLACING = frozenset((Range, Position))
 """What tells where somebody is."""
+LOOSE = ("free", "undecided")
+"""How those move of whom nobody knows how, if they move."""
 EPOCH = attrgetter("t")
 
 
@@ -97,11 +99,9 @@ def parts_of(state: FusionState, readings: Sequence[AnyHeld]) -> list[Sequence[A
         state: the fusion.
         readings: in order of epoch.
     """
-    loose = {
-        n.node for n in state.nodes.values() if n.role in MOVING_ROLES and n.mode in ("free", "undecided")
-    }
     units = _told_until(state)
     soonest = min(units.values(), default=math.inf)
+    loose = {n.node for n in state.nodes.values() if n.mode in LOOSE and n.role in MOVING_ROLES}
     if not loose and (not readings or readings[-1].t <= soonest):
         return [readings]
     together: list[AnyHeld] = []

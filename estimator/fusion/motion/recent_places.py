@@ -72,12 +72,14 @@ def end_of(state: FusionState, node: NodeState, marks: list[Mark]) -> TrailEnd:
         node: the node.
         marks: takes its trail.
     """
-    mode, starts = node.mode, state.graph.starts
+    mode, starts, outside = node.mode, state.graph.starts, node.role in physics.OUTSIDE_ROLES
+    if mode == "static":
+        at, index, way_m = starts[node.position], node.index, node.way_m
+        here = at, STANDS, -1, node.pose_t, *NOWHERE, 0, -1
+        return TrailEnd(*here, index, way_m, True, outside, node.turned, *NOBODY_FACES)
     start = states = -1
     moves, first, (e, n, u), (faced_e, faced_n) = STANDS, len(marks), NOWHERE, NOBODY_FACES
-    if mode == "static":
-        start = starts[node.position]
-    elif mode == "fixed" and node.place_m is not None:
+    if mode == "fixed" and node.place_m is not None:
         e, n, u = node.place_m
     elif mode == "unit":
         start, states, (faced_e, faced_n) = starts[node.position], starts[node.unit], node.faced
@@ -86,7 +88,7 @@ def end_of(state: FusionState, node: NodeState, marks: list[Mark]) -> TrailEnd:
             marks.extend(node.trail)
     elif mode == "free":
         start, states, moves = starts[node.position], starts[node.velocity], DRIFTS
-    last, decided, outside = len(marks) - 1, start >= 0 or mode == "fixed", node.role in physics.OUTSIDE_ROLES
+    last, decided = len(marks) - 1, start >= 0 or mode == "fixed"
     told = node.pose_t, e, n, u, first, last, node.index, node.way_m, decided, outside, node.turned
     return TrailEnd(start, moves, states, *told, faced_e, faced_n)
 

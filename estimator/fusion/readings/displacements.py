@@ -84,10 +84,12 @@ def returns(state: FusionState, readings: Sequence[Displacement]) -> dict[str, f
         state: the fusion.
         readings: a tick's displacements, in order of epoch.
     """
-    told_until = {node.node: node.pose_t for node in state.nodes.values() if node.mode == "unit"}
-    back: dict[str, float] = {}
+    told_until, back = dict[str, float](), dict[str, float]()
     for reading in readings:
-        until_t = told_until.get(reading.node, math.inf)
+        until_t = told_until.get(reading.node)
+        if until_t is None:
+            node = state.nodes.get(reading.node)
+            until_t = node.pose_t if node is not None and node.mode == "unit" else math.inf
         start_t = start_of(reading, until_t)
         if start_t > until_t + physics.FREE_TICK_S:
             back.setdefault(reading.node, start_t)

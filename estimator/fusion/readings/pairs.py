@@ -75,7 +75,7 @@ class Pairs:
     def take(self, readings: Sequence[AnyPair]) -> None:
         """Take readings in, in order of epoch."""
         state, named, told = self._state, self._named, self._told
-        link_of, held, fused, fused_t = state.links.number, self._held, 0, self.fused_t
+        links, held, fused, fused_t = state.links, self._held, 0, self.fused_t
         for reading in readings:
             t, name_a, name_b = reading.t, reading.a, reading.b
             a = named.get(name_a) or self._name(name_a, t)
@@ -109,8 +109,12 @@ class Pairs:
             technology = numbers.get(source)
             if technology is None:
                 technology = self._technology(kind, source, between)
-            link = link_of(source, name_a, name_b)
-            if kind == RANGE and is_repeated(state.links, link, t, value, a.node, b.node):
+            link = links.numbers.get(
+                (source, name_a, name_b) if name_a < name_b else (source, name_b, name_a)
+            )
+            if link is None:
+                link = links.number(source, name_a, name_b)
+            if kind == RANGE and is_repeated(links, link, t, value, a.node, b.node):
                 state.count("not_fused")
                 continue
             told += (t, value, sigma, constant, technology, link, a.number, b.number)
