@@ -100,14 +100,14 @@ def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int)
             heard += 1
             radios[other] = HeardRadio(t, known.heard + 1, 0)
     for other, known in listener.radios.items():
-        if other in before:
+        away, again = known.silent >= silent, other in now
+        # Of the many that are out of reach nothing changes until they are heard again.
+        if (away and not again) or other in before:
             continue
-        if known.silent >= silent:
-            # It is out of reach: of the many that are nothing changes until they are heard again.
-            if other in now:
-                crossed(occasions[-1], now[other], other)
+        if away:
+            crossed(occasions[-1], now[other], other)
             continue
-        missed, again = known.silent + 1, other in now
+        missed = known.silent + 1
         # Until it is thought to be out of reach, what is not heard of it counts as lost.
         if missed < silent or again:
             lost += 1

@@ -58,7 +58,8 @@ def _is_copy(one: Displacement, other: Displacement) -> bool:
 
 def says_the_same(one: Displacement | Reported, other: Displacement | Reported) -> bool:
     """Whether two reports of one unit tell of the same step, and of the same heading if they tell of one."""
-    near = math.dist(one.delta_m, other.delta_m) <= COPY
+    # Most are told apart by what they say of one axis.
+    near = abs(one.delta_m[0] - other.delta_m[0]) <= COPY and math.dist(one.delta_m, other.delta_m) <= COPY
     if one.heading_rad is None or other.heading_rad is None:
         return near and one.heading_rad is other.heading_rad
     return near and abs(one.heading_rad - other.heading_rad) <= COPY
