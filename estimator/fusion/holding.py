@@ -10,7 +10,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.entering import beginnings
+from estimator.fusion.entering import base_entry, beginnings
 from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.fusion.motion.constant_velocity import move_free
@@ -133,6 +133,8 @@ def hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single])
         else:
             others.append(reading)
             until.update(dict.fromkeys(names_of(reading), reading.t))
+    if base_entry.end_unheard(state, between):
+        singles[:] = [single for single in singles if single.variable in state.graph]
     _carry(state, until, readings)
     pairs = Pairs(state)
     told = pairs.fused_t

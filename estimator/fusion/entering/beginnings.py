@@ -7,22 +7,20 @@ After some seconds he is shown at the best mode, and the others are told as imag
 """
 
 import math
-from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
+from estimator.fusion.entering.base_entry import BasePrior, prior_at_base, turned_since
 from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M, Entry, place
 from estimator.fusion.entering.modes import (
     Mode,
     UndecidedNode,
-    costs_of,
     find_modes,
-    residuals_of,
-    short_costs,
 )
+from estimator.fusion.entering.rival_modes import farthest_m, is_place, others_of, with_entry
 from estimator.fusion.entering.sightings import Sightings, heard_between, of_node
 from estimator.fusion.entering.technologies import path_loss_states, technology_states
 from estimator.fusion.images import Alternative, mirrored
@@ -34,15 +32,28 @@ from estimator.graph.dense import Array
 from estimator.graph.variable import BODY
 from estimator.measurements.node import MOVING_ROLES
 
+ENTRY_SIGHTINGS_MIN = 3
+"""So many readings tell whether somebody enters at the base: it takes less than to find him anywhere."""
+
 
 class ChosenMode(NamedTuple):
-    """A beginning: the mode, others that fit, whether it is decided, and the height prior behind it (m)."""
+    """A beginning.
+
+    Attributes:
+        mode: where.
+        others: the places that fit as well.
+        sure: it is decided.
+        up_m: mean of the height prior behind it (m).
+        up_sigma_m: standard deviation of that (m).
+        entry: where he has come in, if that explains what was measured.
+    """
 
     mode: Mode
     others: list[Mode]
     sure: bool
     up_m: float
     up_sigma_m: float
+    entry: BasePrior | None = None
 
 
 def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None:
@@ -65,7 +76,9 @@ def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None
         often = seen >= max(physics.SIGHTINGS_MIN, min(tried + 10, 1.2 * tried))
         since_t, until_t = heard_between(state, node) if moving else (0.0, 0.0)
         late = until_t - since_t >= physics.UNSEEN_S
-        if not often and not late:
+        entry = prior_at_base(state, node, until_t) if moving else None
+        entering = entry is not None and seen > tried
+        if not often and not late and not entering:
             continue
         state.tried[name] = seen
         kept_s = sightings_s
@@ -73,6 +86,7 @@ def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None
             kept_s = physics.UNSEEN_S if late else physics.MOVING_SIGHTINGS_S
         sightings = of_node(state, node, state.newest_t - kept_s)
         least = physics.UNSEEN_SIGHTINGS_MIN if late else physics.SIGHTINGS_MIN
+        least = least if entry is None else ENTRY_SIGHTINGS_MIN
         if sightings is None or len(sightings.t) < least:
             continue
         owner = state.sources[sightings.source]
@@ -83,8 +97,8 @@ def decide(state: FusionState, sightings_s: float = physics.SIGHTINGS_S) -> None
         # What bodies do is little against how unsure a place is that is to be decided.
         own = slice(state.graph.starts[states], state.graph.starts[states] + BODY)
         extra, extra_covariance = state.graph.value(states)[:BODY].copy(), covariance[own, own]
-        chosen = _choose(state, node, sightings, extra, extra_covariance, late)
-        if chosen is not None and (chosen.sure or (late and _is_place(sightings, chosen.mode))):
+        chosen = _choose(state, node, sightings, extra, extra_covariance, late, entry)
+        if chosen is not None and (chosen.sure or (late and is_place(sightings, chosen.mode))):
             _begin(state, node, sightings, chosen, since_t)
             covariance = None
 
@@ -96,6 +110,7 @@ def _choose(
     extra: Array,
     extra_covariance: Array,
     late: bool,
+    entry: BasePrior | None,
 ) -> ChosenMode | None:
     """Where a node may begin; None where no place fits, or the best one is too unsure to begin at.
 
@@ -106,6 +121,7 @@ def _choose(
         extra: states of their technology, 2.
         extra_covariance: of these, 2 × 2.
         late: it begins at the best place, however unsure that is.
+        entry: what is known of it if it may just have entered at the base.
     """
     moving = node.role in MOVING_ROLES
     sigma = seen.sigma * state.learned(state.sources[seen.source]).factor
@@ -130,68 +146,23 @@ def _choose(
     )
     least_m = physics.DECIDED_SIGMA_M[kind]
     modes = find_modes(sought, math.inf if late else least_m)
+    outliers = state.learned(state.sources[seen.source]).outliers(physics.NOISES[seen.kind][0])
+    if modes and entry is not None:
+        all_modes = with_entry(modes, seen, sought, entry)
+        if all_modes[0] is not modes[0]:
+            others = others_of(all_modes, sought, seen.alike, outliers)
+            # Of a whole region in which he may be instead no image tells.
+            known = all(mode.sigma_m <= least_m for mode in others) and (late or not others)
+            beside = farthest_m(seen, all_modes[0]) <= physics.ENTRY_SIGMA_M[0]
+            if known and (beside or is_place(seen, all_modes[0])):
+                return ChosenMode(all_modes[0], others, not others, entry.place_m[2], up_sigma, entry)
+    if len(seen.t) < (physics.UNSEEN_SIGHTINGS_MIN if late else physics.SIGHTINGS_MIN):
+        return None
     decided = bool(modes) and modes[0].sigma_m <= least_m
     if not (decided or (modes and late)):
         return None
-    outliers = state.learned(state.sources[seen.source]).outliers(physics.NOISES[seen.kind][0])
-    others = _others(modes, sought, seen.alike, outliers)
+    others = others_of(modes, sought, seen.alike, outliers)
     return ChosenMode(modes[0], others, decided and not others, sought.up_m, up_sigma)
-
-
-def _others(modes: Sequence[Mode], sought: UndecidedNode, alike: Array, outliers: float) -> list[Mode]:
-    """The modes beside the best one that fit about as well, by either cost.
-
-    Args:
-        modes: best first.
-        sought: what was measured.
-        alike: see `_odd_cost`.
-        outliers: see `_odd_cost`.
-    """
-    best, *rest = modes
-    least = _odd_cost(best, sought, alike, outliers) if rest else 0.0
-
-    def fits(mode: Mode) -> bool:
-        if mode.cost - best.cost < physics.MODE_MARGIN:
-            return True
-        return _odd_cost(mode, sought, alike, outliers) - least < physics.MODE_MARGIN
-
-    return [mode for mode in rest if fits(mode)]
-
-
-def _odd_cost(mode: Mode, sought: UndecidedNode, alike: Array, outliers: float) -> float:
-    """What a mode costs, in log likelihood, where readings far too long, or too weak, are nothing unusual.
-
-    By its tails a Cauchy loss would rather believe in a place from which echoes are less too long, though
-    sharp ranges contradict it.
-
-    Args:
-        mode: the mode.
-        sought: what was measured.
-        alike: how many readings of its link share an error, as each counts, m.
-        outliers: share of the readings that are.
-    """
-    ranged, m = sought.kind == "range", len(sought.value)
-    usual = physics.RANGE_NOISE if ranged else physics.RSSI_NOISE
-    residual = residuals_of(sought, mode.position_m, mode.extra)
-    noise = np.tile((outliers, usual.shift, usual.spread), (m, 1))
-    costs = costs_of(residual, sought.sigma, noise, np.full(m, ranged), alike)
-    if ranged:
-        costs += short_costs(residual, sought.sigma)
-    off, up = mode.extra - sought.extra, (mode.position_m[2] - sought.up_m) / sought.up_sigma_m
-    return float(costs.sum() + 0.5 * (off @ np.linalg.solve(sought.extra_covariance, off) + up**2))
-
-
-def _is_place(seen: Sightings, mode: Mode) -> bool:
-    """Whether a mode is a place at all: about one radio everybody's may be anywhere on its ring.
-
-    A covariance is linear, and would be sure of the side on which somebody is shown.
-    """
-    return mode.sigma_m < _farthest_m(seen, mode)
-
-
-def _farthest_m(seen: Sightings, mode: Mode) -> float:
-    """From a mode to the farthest place that was measured from (m)."""
-    return float(np.hypot(*(seen.points[:, :2] - mode.position_m[:2]).T).max())
 
 
 def _walked_m(node: NodeState, s: Array) -> Array:
@@ -217,14 +188,20 @@ def _begin(state: FusionState, node: NodeState, seen: Sightings, chosen: ChosenM
         place(state, node, t, here, (NO_PRIOR_SIGMA_M, NO_PRIOR_SIGMA_M, chosen.up_sigma_m))
         return
     # Until the window is solved, which is at once, what the sightings tell stands in the filter.
-    farthest_m = _farthest_m(seen, mode)
+    far_m = farthest_m(seen, mode)
     if seen.kind == RANGE:
         # On a ring nobody is farther from its radio than its radius.
-        reach_m = farthest_m + float(_walked_m(node, np.array([t - since_t]))[0])
+        reach_m = far_m + float(_walked_m(node, np.array([t - since_t]))[0])
     else:
-        reach_m = max(physics.REACH_M, farthest_m)
+        reach_m = max(physics.REACH_M, far_m)
     centre = (*seen.points[:, :2].mean(axis=0).tolist(), chosen.up_m)
     entered = Entry(since_t, centre, (reach_m, reach_m, chosen.up_sigma_m))
+    if chosen.entry is not None:
+        came = chosen.entry
+        node = replace(node, absolute=replace(node.absolute, beginning="assumed"))
+        entered = Entry(since_t, came.place_m, (came.sigma_m, came.sigma_m, chosen.up_sigma_m))
+    else:
+        node = replace(node, heading_sigma_rad=turned_since(state, node, t))
     sigma_m = min(mode.sigma_m, reach_m)
     since_t = since_t if state.window_t is None else max(float(np.floor(since_t)), state.window_t)
     place(

@@ -58,7 +58,8 @@ def _told_again(state: FusionState, known: NodeState, reading: Node) -> list[Pos
         return []
     if told_m is not None and math.dist(where_m, told_m) <= max(sigma, SAME_M):
         return []
-    if node.moving and (node.way_m > SET_OFF_M or (told_m is not None and known.mode == "free")):
+    began = node.way_m > SET_OFF_M and known.absolute.beginning != "unheard"
+    if node.moving and (began or (told_m is not None and known.mode == "free")):
         text = f"{node.node} is on the way already: where it began is set aside (a fix tells where it is)"
         state.say("conflict", reading.t, node.node, text, once=f"{node.node} told again")
         return []

@@ -1,5 +1,6 @@
 """Nodes enter: by a `node` reading, at a fix, at the base, or where a responder drops them."""
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -26,14 +27,22 @@ def introduce(state: FusionState, reading: Node) -> bool:
     known = state.nodes.get(reading.node)
     if known is None:
         number = state.number(reading.node)
-        node = NodeState(node=reading.node, role=reading.role, named=True, t=reading.t, index=number)
+        node = NodeState(
+            node=reading.node,
+            role=reading.role,
+            named=True,
+            t=reading.t,
+            index=number,
+            introduced_t=reading.t,
+        )
     elif known.role != reading.role and not _may_become(state, known, reading):
         return False
     else:
         known = state.nodes[reading.node]
         # Of who has a place a name is no news: his fix is as old as it was.
         since_t = known.t if known.decided else max(known.t, reading.t)
-        node = replace(known, role=reading.role, named=True, t=since_t)
+        introduced_t = known.introduced_t if known.named else reading.t
+        node = replace(known, role=reading.role, named=True, t=since_t, introduced_t=introduced_t)
     if reading.heading_rad is not None:
         node = replace(node, heading_rad=reading.heading_rad)
     if reading.heading_sigma_rad is not None:
@@ -139,27 +148,11 @@ def place(
         across, upwards = physics.SPEED_SIGMA_MPS[node.role]
         state.graph.add_node(node.velocity, (0.0, 0.0, 0.0), (across, across, upwards))
         state.nodes[node.node] = replace(node, mode="free", pose_t=t, t=max(t, node.t))
+        if node.role == "responder" and state.entered_t is None:
+            state.entered_t = since.t
     else:
         state.ledger.add("stands", t, node.index, east, north, up, *floored)
         state.nodes[node.node] = replace(node, mode="static", t=max(t, node.t))
-
-
-def begin_at_base(state: FusionState, node: NodeState, t: float) -> None:
-    """A responder whose first position nobody gave enters at the base: 3 m horizontally, 1 m in height."""
-    assumed = replace(node, absolute=replace(node.absolute, beginning="assumed"))
-    place(state, assumed, t, state.base_place(), physics.ENTRY_SIGMA_M)
-
-
-def waits_for_ranges(state: FusionState, node: NodeState, t: float) -> bool:
-    """Whether ranges are to tell where a node is: soon, where no base says where it entered.
-
-    Who has been inside for long is at no base by now, however long they take.
-    """
-    if node.inside:
-        return True
-    anchored = any(n.role in ("base", "anchor") and n.decided for n in state.nodes.values())
-    based = any(n.mode == "fixed" for n in state.nodes.values())
-    return anchored and not based and t - node.t < physics.WAIT_FOR_RANGES_S
 
 
 def attach_unit(
@@ -239,6 +232,8 @@ def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float)
         node = replace(node, mode="undecided", index=state.number(name))
     wide = (NO_PRIOR_SIGMA_M,) * 3
     node = replace(node, otherwise=by.otherwise, unseen_up_m2=by.doubt_up_m2, place_told_t=t)
+    if math.isinf(node.introduced_t):
+        node = replace(node, introduced_t=t)
     place(state, node, t, where_m, wide)
     state.ledger.add("drops", t, node.index, by.index)
     start = state.graph.rows(state.nodes[name].position).start

@@ -8,6 +8,7 @@ somebody who moves was, and what he faced, do not: he has entered long ago, and 
 from msgspec.structs import replace
 
 from estimator.fusion.entering import corrections, reentry
+from estimator.fusion.entering.guesses import forget_place
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.measurements.node import MOVING_ROLES, LateNode, Node
@@ -77,17 +78,7 @@ def _forget_guess(state: FusionState, known: NodeState, reading: LateNode) -> No
     guessed = known.role not in MOVING_ROLES and known.mode in ("undecided", "static")
     if not guessed or not (moves or (placed and reading.role == "base")):
         return
-    if placed:
-        state.graph.delete_nodes([known.position])
-    if moves:
-        pairs, singles = state.ledger.table("pairs"), state.ledger.table("singles")
-        state.ledger.replace("pairs", pairs[(pairs[:, 2:4] != known.index).all(axis=1)])
-        state.ledger.replace("singles", singles[singles[:, 1] != known.index])
-        state.due = True
-    for kept in (state.sightings, state.tried, state.mistold):
-        kept.pop(known.node, None)
-    number = state.number(known.node)
-    state.nodes[known.node] = replace(known, mode="undecided", index=number, otherwise=())
+    forget_place(state, known, moves)
 
 
 def _of_retired(state: FusionState, known: NodeState, reading: LateNode, lasting: Node) -> None:
@@ -95,7 +86,9 @@ def _of_retired(state: FusionState, known: NodeState, reading: LateNode, lasting
     called, taken = state.called.get(known.node), list[str]()
     if reading.told_t > (known.t if called is None else called.t):
         reentry.note_introduction(state, lasting)
-        taken = ["that it may come back"] if state.called.get(known.node) is lasting else []
+        if state.called.get(known.node) is lasting:
+            state.nodes[known.node] = replace(known, inside=reading.role in MOVING_ROLES)
+            taken = ["that it may come back"]
     elif known.named or known.place_m is not None:
         state.count("not_fused")
     else:

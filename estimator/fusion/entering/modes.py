@@ -14,6 +14,7 @@ from estimator.measurements.range import predict_range, range_at
 from estimator.measurements.rssi import predict_rssi, rssi_at
 
 ANGLES = 12
+AROUND: Array = np.column_stack([f(np.arange(ANGLES) * (2.0 * np.pi / ANGLES)) for f in (np.cos, np.sin)])
 STEPS = 25
 CAUCHY = 2.0
 APART_M = 2.0
@@ -87,15 +88,19 @@ class Mode(NamedTuple):
         position_m: east, north, up, 3 (m).
         cost: negative log likelihood, up to a constant.
         sigma_m: standard deviation along the worst horizontal direction (m).
+        across_m: the same along the best one (m).
         up_sigma_m: standard deviation of the height (m).
         extra: states of the technology there, 2.
+        before: what of the cost is not of the readings: how likely the place is without them.
     """
 
     position_m: Array
     cost: float
     sigma_m: float
+    across_m: float
     up_sigma_m: float
     extra: Array
+    before: float = 0.0
 
 
 def residuals_of(sought: UndecidedNode, place_m: Array, extra: Array) -> Array:
@@ -124,10 +129,7 @@ def find_modes(sought: UndecidedNode, unsure_m: float = math.inf) -> list[Mode]:
         unsure_m: where the best place has a larger standard deviation, it is the only one that is told (m).
     """
     sought = _thinned(sought)
-    prior = np.zeros((5, 5))
-    prior[2, 2] = sought.up_sigma_m**-2
-    prior[3:, 3:] = np.linalg.inv(sought.extra_covariance)
-    mean = np.array([0.0, 0.0, sought.up_m, *sought.extra])
+    prior, mean = _prior_of(sought)
     ranged = sought.kind == "range"
     told = np.ascontiguousarray(sought.points), np.ascontiguousarray(sought.value), sought.sigma
     state, normal, cost = _descend(ranged, *told, _starts(sought), prior, mean)
@@ -135,10 +137,8 @@ def find_modes(sought: UndecidedNode, unsure_m: float = math.inf) -> list[Mode]:
     left = np.argsort(cost, kind="stable")
     while len(left):
         i = left[0]
-        covariance = np.linalg.inv(normal[i])[:3, :3]
-        spread = float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1]))
-        up_sigma_m = float(np.sqrt(covariance[2, 2]))
-        modes.append(Mode(state[i, :3].copy(), float(cost[i]), spread, up_sigma_m, state[i, 3:].copy()))
+        modes.append(_mode(state[i], normal[i], float(cost[i])))
+        spread = modes[-1].sigma_m
         if len(modes) == 1 and spread > unsure_m:
             break
         # Most starts lead to the same few places.
@@ -146,6 +146,46 @@ def find_modes(sought: UndecidedNode, unsure_m: float = math.inf) -> list[Mode]:
         apart = np.hypot(off[:, 0], off[:, 1]) > max(APART_M, 3.0 * spread)
         left = left[1:][apart[1:]]
     return modes
+
+
+def mode_at(sought: UndecidedNode, place_m: Array, sigma_m: float) -> Mode:
+    """What fits best about a place that is likely without any reading.
+
+    Args:
+        sought: what was measured.
+        place_m: the place: east, north (m).
+        sigma_m: how far from it, along each axis (m).
+    """
+    sought = _thinned(sought)
+    prior, mean = _prior_of(sought)
+    prior[0, 0] = prior[1, 1] = sigma_m**-2
+    mean[:2] = place_m
+    told = np.ascontiguousarray(sought.points), np.ascontiguousarray(sought.value), sought.sigma
+    starts = np.tile(mean, (ANGLES, 1))
+    # At the place itself there may be a radio, from which all ways are alike.
+    starts[:, :2] += sigma_m * AROUND
+    state, normal, cost = _descend(sought.kind == "range", *told, starts, prior, mean)
+    best = int(np.argmin(cost))
+    off_m = state[best, :2] - place_m
+    found = _mode(state[best], normal[best], float(cost[best]))
+    return found._replace(before=0.5 * float(off_m @ off_m) / sigma_m**2)
+
+
+def _mode(state: Array, normal: Array, cost: float) -> Mode:
+    """A place from a state, 5, and the normal matrix there, 5 × 5."""
+    covariance = np.linalg.inv(normal)[:3, :3]
+    across_m, spread_m = np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])).tolist()
+    return Mode(
+        state[:3].copy(), cost, spread_m, across_m, float(np.sqrt(covariance[2, 2])), state[3:].copy()
+    )
+
+
+def _prior_of(sought: UndecidedNode) -> tuple[Array, Array]:
+    """What is known beforehand of height and technology: its information, 5 × 5, and its mean, 5."""
+    prior = np.zeros((5, 5))
+    prior[2, 2] = sought.up_sigma_m**-2
+    prior[3:, 3:] = np.linalg.inv(sought.extra_covariance)
+    return prior, np.array([0.0, 0.0, sought.up_m, *sought.extra])
 
 
 def _thinned(sought: UndecidedNode) -> UndecidedNode:
@@ -163,10 +203,8 @@ def _starts(sought: UndecidedNode) -> Array:
     else:
         decades = (sought.extra[0] - sought.value) / (10.0 * max(sought.extra[1], 1.0))
         distance = 10.0 ** np.clip(decades, -1.0, 2.5)
-    angles = np.arange(ANGLES) * (2.0 * np.pi / ANGLES)
-    around = np.column_stack([np.cos(angles), np.sin(angles)])
     centres = sorted({0, m // 2, m - 1, int(np.argmin(distance))})
-    rings = [sought.points[i, :2] + around * max(distance[i], 0.5) for i in centres]
+    rings = [sought.points[i, :2] + AROUND * max(distance[i], 0.5) for i in centres]
     horizontal = np.concatenate(rings)
     rest = np.broadcast_to([sought.up_m, *sought.extra], (len(horizontal), 3))
     return np.column_stack([horizontal, rest])
@@ -234,7 +272,6 @@ def _linearise(
 ) -> tuple[Array, Array, float]:
     """Normal matrix 5 × 5, gradient 5 and cost at a state, 5."""
     off = mean - state
-    off[:2] = 0.0
     gradient = prior @ off
     cost = 0.5 * np.dot(off, gradient)
     normal, row = prior.copy(), np.empty(5)

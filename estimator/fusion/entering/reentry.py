@@ -4,6 +4,8 @@ A crew that goes in again is introduced again. Gateways repeat introductions, th
 put right after somebody has left: only who is introduced and then reported of has come back.
 """
 
+from msgspec.structs import replace
+
 from estimator.fusion.entering import introduce
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -19,6 +21,7 @@ def note_introduction(state: FusionState, reading: Node) -> None:
     tells = reading.role in MOVING_ROLES or reading.role == "base" or reading.position_m is not None
     if reading.t > known.t and tells:
         state.called[reading.node] = reading
+        state.nodes[reading.node] = replace(known, inside=False)
     elif reading.position_m not in (None, known.place_m):
         state.say("conflict", reading.t, known.node, f"{known.node} is retired and is not moved")
         state.count("not_fused")
@@ -37,8 +40,10 @@ def re_enter(state: FusionState, name: str, t: float) -> None:
     reading = state.called.get(name)
     if reading is None or t < reading.t:
         return
+    inside = state.nodes[name].inside
     begin_anew(state, state.nodes[name], reading.role, reading.t)
     introduce.introduce(state, reading)
+    state.nodes[name] = replace(state.nodes[name], inside=inside)
     state.say("came_back", t, name, f"{name} has come back: introduced again and reported of")
 
 
@@ -57,4 +62,6 @@ def begin_anew(state: FusionState, known: NodeState, role: Role, t: float) -> No
         kept.pop(name, None)
     # Where it was is nowhere near: what radios heard of it then tells of no reach.
     state.listeners = {a: listener.without(name) for a, listener in state.listeners.items()}
-    state.nodes[name] = NodeState(node=name, role=role, named=known.named, t=t, index=state.number(name))
+    state.nodes[name] = NodeState(
+        node=name, role=role, named=known.named, t=t, index=state.number(name), introduced_t=t
+    )

@@ -57,7 +57,7 @@ def check_fix(
         or error_of(state, node, off_m, sigma_m) < CONTRADICTED
     )
     known = known.with_fix(t, fits, (east, north), SAME_SIGMAS * sigma_m)
-    assumed = known.beginning == "assumed"
+    assumed = known.beginning in ("assumed", "unheard")
     soon = 1 if node.way_m < SET_OFF_M else LATER
     needed = soon if assumed else known.fits + MORE
     if fits and (assumed or known.fits >= MORE):

@@ -60,9 +60,9 @@ class SharedError(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return min(row, math.sqrt(white + common * (1.0 + self.kept) / (1.0 - self.kept)))
 
 
-Beginning = Literal["sure", "assumed", "fix"]
+Beginning = Literal["sure", "assumed", "unheard", "fix"]
 """What tells where somebody began: a gateway, or later readings that agree; nobody, so it was taken to be at
-the base; a single fix."""
+the base; nothing at all, so it may be; a single fix."""
 
 
 class Absolute(msgspec.Struct, frozen=True, array_like=True, gc=False):

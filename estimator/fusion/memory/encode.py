@@ -55,6 +55,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     suspected: bool
     exposed: bool
     begun_t: float | None
+    entered_t: float | None
     refreshed_t: float
     window_t: float | None
     prior: PriorRecord | None
@@ -101,6 +102,7 @@ def record_of(state: FusionState) -> FusionRecord:
         state.suspected,
         state.exposed,
         state.begun_t,
+        state.entered_t,
         state.refreshed_t,
         state.window_t,
         None
@@ -144,7 +146,7 @@ def state_of(record: FusionRecord) -> FusionState:
         state.ledger.replace(name, unpack(record.tables[name]))
     state.newest_t, state.due, state.begun_t = record.newest_t, record.due, record.begun_t
     state.suspected, state.exposed = record.suspected, record.exposed
-    state.refreshed_t, state.window_t = record.refreshed_t, record.window_t
+    state.entered_t, state.refreshed_t, state.window_t = record.entered_t, record.refreshed_t, record.window_t
     state.calibrations, state.bent_m = record.calibrations, record.bent_m
     state.bodies = record.bodies
     state.level_cost = record.level_cost

@@ -64,7 +64,8 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         turned: its unit's frame may be turned by any angle: every window is tried with several.
         bias_told: what readings say of its unit's gyro bias without its prior.
         otherwise: where it may be instead, by what readings tell as well.
-        whole_t: since when its unit's displacements follow each other without a gap.
+        whole_t: since when its unit's displacements follow each other without a gap; while it is undecided,
+            since when they come (s).
         missed_s: for how long it has told nothing, all gaps since it last told a whole stride.
         placed_t: epoch of the newest range or fix by which its bearer was followed while it was silent (s).
         cadence: how its unit reports, of displacements of which it does not say since when they are.
@@ -74,6 +75,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         place_told_t: epoch of what told last where it stands, or that it lies elsewhere now (s).
         device_told_t: epoch of the `node` reading that told its device (s).
         inside: it was introduced too late: it has entered long ago, and may be anywhere by now.
+        introduced_t: epoch of the first introduction or drop that came in time (s).
         walk_factors: learned variances of its unit over the assumed ones: of displacements, of its heading.
     """
 
@@ -123,6 +125,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     place_told_t: float = -math.inf
     device_told_t: float = -math.inf
     inside: bool = False
+    introduced_t: float = -math.inf
 
     @property
     def position(self) -> Variable:

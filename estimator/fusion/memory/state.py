@@ -58,6 +58,7 @@ class FusionState:
         exposed: somebody may be followed to an image of where he goes: the window is to be solved again
             soon.
         begun_t: end of the first tick with a node in it.
+        entered_t: epoch at which the first responder began (s): until then nobody was inside.
         refreshed_t: end of the tick at which the window was last solved.
         window_t: epoch of the window's first keyframe.
         prior: what is known from before the window.
@@ -101,6 +102,7 @@ class FusionState:
         self.suspected = False
         self.exposed = True
         self.begun_t: float | None = None
+        self.entered_t: float | None = None
         self.refreshed_t = 0.0
         self.window_t: float | None = None
         self.prior: Prior | None = None

@@ -3,8 +3,12 @@
 import math
 from collections.abc import Sequence
 
+from msgspec.structs import replace
+
 from estimator.fusion import physics
-from estimator.fusion.entering.introduce import attach_unit, begin_at_base, waits_for_ranges
+from estimator.fusion.entering.base_entry import begin_at_base, may_be_inside, waits_for_ranges
+from estimator.fusion.entering.guesses import forget_place, is_guessed_to_stand
+from estimator.fusion.entering.introduce import attach_unit
 from estimator.fusion.entering.replaced_unit import begin_frame, framed
 from estimator.fusion.memory.ledger import ASSUMED, CLAIMED, GYRO_BIAS
 from estimator.fusion.memory.state import Count, FusionState
@@ -54,14 +58,22 @@ def set_aside(state: FusionState, name: str, t: float) -> None:
 def _begin(state: FusionState, reading: Displacement) -> Step | None:
     """The step that a unit's first displacement in a tick begins; None where its node is not to move."""
     node = state.node_of(reading.node, "responder", reading.t)
+    if is_guessed_to_stand(node):
+        forget_place(state, node, moves=True)
+        node = replace(state.nodes[node.node], role="responder")
     if node.role not in MOVING_ROLES or node.mode == "retired":
         text = f"{node.node} is a {node.mode} {node.role}: its displacement is set aside"
         state.say("conflict", reading.t, node.node, text, once=f"displacement of {node.node}")
         return None
     if node.mode == "undecided":
+        state.nodes[node.node] = node = replace(node, whole_t=min(node.whole_t, reading.t))
         if waits_for_ranges(state, node, reading.t):
-            text = f"nobody said where {node.node} entered: its displacements wait for ranges that tell"
-            state.say("not_fused", reading.t, node.node, text, once=f"{node.node} waits for ranges")
+            # Where he may be inside it takes a moment to hear him.
+            if reading.t > node.whole_t + physics.MOVING_SIGHTINGS_S or not may_be_inside(
+                state, node, reading.t
+            ):
+                text = f"nobody said where {node.node} entered: its displacements wait for ranges that tell"
+                state.say("not_fused", reading.t, node.node, text, once=f"{node.node} waits for ranges")
             return None
         begin_at_base(state, node, start_of(reading, None))
     if state.nodes[node.node].mode == "free":

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from estimator.fusion.entering import introduce, reentry
+from estimator.fusion.entering import base_entry, introduce, reentry
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.recent_places import offset_of
 from estimator.measurements.drop import Drop
@@ -12,11 +12,12 @@ from estimator.measurements.node import MOVING_ROLES
 def hold(state: FusionState, reading: Drop) -> bool:
     """Let a breadcrumb lie where its bearer stands; False where that is not known, or it lies already."""
     by = state.node_of(reading.by, "responder", reading.t)
-    waits = introduce.waits_for_ranges(state, by, reading.t)
+    waits = base_entry.waits_for_ranges(state, by, reading.t)
     if by.mode == "undecided" and by.role in MOVING_ROLES and not waits:
-        introduce.begin_at_base(state, by, reading.t)
+        base_entry.begin_at_base(state, by, reading.t)
         by = state.nodes[reading.by]
-    if not by.decided or by.apart is not None:
+    unheard = by.absolute.beginning == "unheard"
+    if not by.decided or by.apart is not None or unheard:
         text = f"nobody knows where {reading.by} is: {reading.node} cannot be dropped by it"
         state.say("conflict", reading.t, reading.node, text)
         state.count("not_fused")

@@ -70,16 +70,16 @@ def test_ranges_to_an_anchor_that_was_introduced_too_late_tell_where_somebody_is
 def test_who_was_taken_for_a_breadcrumb_walks_once_it_is_told_who_he_is() -> None:
     tracker = tracked([BASE, *PLACED])
 
-    def walk(since: int, until: int) -> None:
+    def walk(since: int, until: int, reports: bool) -> None:
         for second in range(since, until):
-            here = ranged(float(second), (10.0 + 0.1 * second, 8.0))
-            tracker.fold([*here, step(float(second), (0.1, 0.0, 0.0))])
+            tracker.fold(ranged(float(second), (10.0 + 0.1 * second, 8.0)))
+            if reports:
+                tracker.fold([step(float(second), (0.1, 0.0, 0.0))])
 
-    tracker.fold(ranged(0.0, (10.0, 8.0)))
-    walk(1, 150)
+    walk(0, 150, reports=False)
     assert shown(tracker).role == "breadcrumb"
     tracker.fold([told(0.0, "responder", 10.0)])
-    walk(150, 200)
+    walk(150, 200, reports=True)
     found, at = shown(tracker), (10.0 + 19.9, 8.0)
     assert found.role == "responder"
     assert off_m(found, at) < 0.5
