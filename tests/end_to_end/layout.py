@@ -46,6 +46,18 @@ class LayoutSeen:
         return min(widths)
 
     @property
+    def name_ends_seen(self) -> list[str]:
+        """The last letters of each long name that gives way on the board, where they are wholly seen."""
+        found: list[str] = self.page.get_by_test_id("board").evaluate(
+            """(board) => [...board.querySelectorAll('.name.parts')].flatMap((name) => {
+              const [room, end] = [name, name.lastElementChild].map((one) => one.getBoundingClientRect());
+              const seen = end.width > 0 && end.right <= room.right + 1 && end.bottom <= room.bottom + 1;
+              return seen ? [name.lastElementChild.textContent] : [];
+            })"""
+        )
+        return found
+
+    @property
     def calls_not_in_view(self) -> str:
         """What is said of calls that the list of alarms has no room for; nothing while all are seen."""
         said = self.page.get_by_test_id("alarms-unseen")

@@ -63,6 +63,28 @@ def test_however_long_a_name_is_the_status_and_the_age_are_seen(
         commander.closes_the_card()
 
 
+@pytest.mark.parametrize(("width", "height"), [(1180, 820), (820, 1180), (390, 844)])
+def test_people_of_one_vehicle_whose_names_begin_alike_are_told_apart_on_the_board_and_low_on_air(
+    server: Server, post: Post, commander: Commander, width: int, height: int
+) -> None:
+    incident = post.open_incident()
+    names = [f"Löschgruppenfahrzeug-1-Atemschutztrupp-{number}" for number in (1, 2)]
+    crew = [
+        responder(T0, f"ff{at}", "A", [4 * at, 2, 0]) | {"callsign": name} for at, name in enumerate(names)
+    ]
+    air = [{"kind": "status", "t": T0, "node": f"ff{at}", "air_bar": 30.0} for at in range(2)]
+    heard(post, incident, base(T0), *crew, *air)
+    commander.sits_at(width, height)
+    commander.opens(server.url, incident)
+    eventually(lambda: len(commander.board()) == 2)
+    assert set(commander.board()) == set(names)
+    assert commander.name_ends_seen == ["utztrupp-1", "utztrupp-2"]
+    assert (commander.off_the_screen, commander.cut_off()) == ([], [])
+    eventually(lambda: len(commander.low_on_air) == 2)
+    for number in (1, 2):
+        assert any(f"…utztrupp-{number}" in told for told in commander.low_on_air)
+
+
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768), (390, 844)])
 def test_however_long_the_name_of_a_storey_is_how_sure_it_is_and_the_map_are_seen(
     server: Server, post: Post, commander: Commander, width: int, height: int

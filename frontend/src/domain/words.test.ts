@@ -90,3 +90,11 @@ test("to the west and south a distance has no sign of its own", () => {
   expect(words.sideways(-4.04, "E", "W")).toBe("4.0\u00a0m\u00a0W");
   expect(words.sideways(12, "N", "S")).toBe("12.0\u00a0m\u00a0N");
 });
+
+test("a long name gives way before its end, which tells it from others of its vehicle", () => {
+  const names = ["Florian Frankfurt 1/46-1 Angriffstrupp", "Florian Frankfurt 1/46-1 Wassertrupp"];
+  const parts = names.map(words.nameInParts);
+  expect(parts.map((both) => both?.join(""))).toEqual(names);
+  expect(parts.map((both) => both?.[1])).toEqual(["riffstrupp", "assertrupp"]);
+  expect(["E7-1", "الإطفائي محمد عبد الرحمن"].map(words.nameInParts)).toEqual([null, null]);
+});

@@ -64,18 +64,28 @@ const FROM_THE_RIGHT = /[\u0590-\u08ff\ufb1d-\ufdff\ufe70-\ufefc]/;
 /** So many letters of a name have room beside a mark. */
 const BESIDE_MARK = 22;
 
+/** So many letters at its beginning, and at its end, tell a long name from others. */
+const TELLING = (BESIDE_MARK - 2) / 2;
+
 /**
  * A name in one text with other words: one from the right draws no numbers after it to its other side (Unicode
  * Annex 9, isolates). A long one gives way in its middle: its beginning and its end tell it from others.
  */
 export function nameInText(name: string): string {
   const letters = [...name];
-  const kept = (BESIDE_MARK - 2) / 2;
   const fits =
     letters.length <= BESIDE_MARK
       ? name
-      : `${letters.slice(0, kept).join("")}…${letters.slice(-kept).join("")}`;
+      : `${letters.slice(0, TELLING).join("")}…${letters.slice(-TELLING).join("")}`;
   return FROM_THE_RIGHT.test(fits) ? `\u2068${fits}\u2069` : fits;
+}
+
+/** A long name as what gives way where there is no room, and its end, which does not; null for a short one, and for
+ * one from the right, whose parts would change sides. */
+export function nameInParts(name: string): readonly [string, string] | null {
+  const letters = [...name];
+  if (letters.length <= BESIDE_MARK || FROM_THE_RIGHT.test(name)) return null;
+  return [letters.slice(0, -TELLING).join(""), letters.slice(-TELLING).join("")];
 }
 
 /** The spoken name of a level: the incident's own, else the bare number. */

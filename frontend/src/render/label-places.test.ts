@@ -144,6 +144,19 @@ test("no label lies under the buttons; who is in alarm is labelled also where no
   expect([...placed(both, NOWHERE_BEFORE, [everywhere]).keys()]).toEqual(["mayday"]);
 });
 
+test("who is in alarm among marks and buttons is labelled more briefly over marks, rather than under a button", () => {
+  const buttons = [
+    { x: 0, y: 0, width: 375, height: 600 },
+    { x: 500, y: 0, width: 300, height: 600 },
+  ];
+  const marks = Array.from({ length: 60 }, (_, row) => ({ x: 375, y: 10 * row, width: 125, height: 10 }));
+  const spot = labelPlaces([wants("mayday", 400, 300, true)], marks, buttons, MAP, NOWHERE_BEFORE).get(
+    "mayday",
+  );
+  expect(spot?.text).toBe("short");
+  expect(buttons.some((button) => spot === undefined || overlap(spot.box, button))).toBe(false);
+});
+
 test("in a crowd that nobody could follow lines to, whoever must be labelled is, off all others and all marks", () => {
   const must = [wants("chosen", 404, 304, true), wants("mayday", 412, 310, true)];
   const all = [...must, ...crowd(50)];

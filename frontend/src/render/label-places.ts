@@ -113,8 +113,11 @@ export function labelPlaces(
         pick(farShort) ??
         pick(brief) ??
         pick(farBrief);
+      if (label.always) {
+        const anywhere = [...whole, ...short, ...brief, ...farShort, ...farBrief];
+        spot ??= free(anywhere, written) ?? free(anywhere, over) ?? whole[0];
+      }
     }
-    if (label.always) spot ??= free(whole, written) ?? free(whole, over) ?? whole[0];
     if (spot === undefined) continue;
     for (const box of [spot.box, ...spot.line]) {
       everything.add(box);
