@@ -18,6 +18,8 @@ STANDS = 2
 """So many reports of no way in a row are those of a unit that reports while its bearer stands."""
 RECENT_S, RECENT = 4.0, 16
 """What a report may be a copy of is as old, and one of so many."""
+PAUSE_S = 10.0
+"""No unit that leads anybody reports so seldom: a longer time between two reports is no usual one."""
 ODDS_MOST = 7.0
 """No habit is surer than this log odds: units are started anew."""
 
@@ -58,7 +60,8 @@ class Cadence(msgspec.Struct, frozen=True, array_like=True, gc=False):
     @property
     def usual_s(self) -> float | None:
         """The time between two reports without their copies by up to three gateways (s); None: not known."""
-        return sorted(self.spans_s)[3 * len(self.spans_s) // 4] if self.spans_s else None
+        spans_s = sorted(span for span in self.spans_s if span <= PAUSE_S)
+        return spans_s[3 * len(spans_s) // 4] if spans_s else None
 
     @property
     def period_s(self) -> float | None:

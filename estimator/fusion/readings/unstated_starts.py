@@ -48,7 +48,9 @@ def with_starts(state: FusionState, readings: Sequence[Displacement]) -> list[Di
 
 def _begun(state: FusionState, reading: Displacement) -> Displacement | None:
     node = state.nodes.get(reading.node)
-    if reading.from_t is not None or isinstance(reading, InertialDisplacement) or node is None:
+    if reading.from_t is not None or isinstance(reading, InertialDisplacement):
+        return reading
+    if node is None or node.mode == "retired":
         return reading
     cadence = node.cadence if node.unit_t is not None else Cadence()
     since_s = reading.t - cadence.recent[-1].t if cadence.recent else FIRST_DURATION_S

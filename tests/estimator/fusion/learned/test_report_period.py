@@ -58,3 +58,8 @@ def test_what_copies_can_be_of_is_some_seconds_old_and_no_habit_is_certain() -> 
     cadence = after(range(60), losing=1.0)
     assert min(told.t for told in cadence.recent) >= 59.0 - RECENT_S
     assert cadence.losing == ODDS_MOST
+
+
+def test_a_silence_is_no_usual_time_between_reports() -> None:
+    assert after([0.0, 1.0, 2.0, 98.0]).usual_s == 1.0
+    assert after([0.0, 98.0]).usual_s is None

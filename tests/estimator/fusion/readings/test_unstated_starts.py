@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from estimator.estimate import NodeEstimate
 from estimator.graph.dense import Array
 from estimator.measurements.displacement import Displacement
+from estimator.measurements.retire import Retire
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, SURE, outside
 from tests.estimator.walks import BEGINS
@@ -156,3 +157,26 @@ def test_who_stands_while_his_unit_says_nothing_has_not_walked_on() -> None:
     last = shown(steps)[-1]
     assert last.position_m is not None
     assert last.position_m[0] == pytest.approx(42.0, abs=1.0)
+
+
+@pytest.mark.parametrize("step_m", [0.8, 0.0])
+@pytest.mark.parametrize("before", [1, 2, 4])
+def test_reports_that_are_all_alike_after_an_early_silence_are_no_copies(before: int, step_m: float) -> None:
+    """Who walks evenly, or stands: the silence is not the usual time between two reports."""
+    epochs = [*range(1, before + 1), *range(40, 70)]
+    steps = [Displacement(t=float(t), node="ff1", delta_m=(step_m, 0.0, 0.0)) for t in epochs]
+    last = shown(steps)[-1]
+    assert last.t == epochs[-1]
+    assert last.position_m is not None
+    assert last.position_m[0] >= 0.99 * step_m * len(epochs)
+
+
+def test_what_a_unit_reports_after_its_bearer_has_left_is_said_to_be_set_aside_and_no_copy() -> None:
+    steps = [Displacement(t=float(t), node="ff1", delta_m=(0.8, 0.0, 0.0)) for t in (1, 2, 3, 40, 41, 42, 43)]
+    tracker = KirchhoffTracker()
+    tracker.fold([BEGINS, *steps[:3], Retire(t=4.0, node="ff1")])
+    for step in steps[3:]:
+        tracker.fold([step])
+    assert [notice.text for notice in tracker.take_notices()] == [
+        "ff1 is a retired responder: its displacement is set aside"
+    ]
