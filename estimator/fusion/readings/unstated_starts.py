@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
-from estimator.fusion.learned.report_period import Cadence, Reported, is_whole
+from estimator.fusion.learned.report_period import SPANS_LEAST, Cadence, Reported, is_whole
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.coasting import mark_after, onward_m
 from estimator.fusion.motion.recent_places import Mark
@@ -23,6 +23,8 @@ from estimator.measurements.displacement import Displacement
 
 SOON = 0.75
 """A copy comes in less of its original's time; the next report that says the same by chance does not."""
+FEW, EVEN = 10, 0.03
+"""Of a unit hardly known the usual time may be so many of its own, and is then a whole number as closely."""
 BELIEVED = -math.log(9.0)
 """Reports are taken to be lost unless it is as unlikely: then their bearer is shown surer of his place."""
 MORE = 1.5
@@ -92,11 +94,20 @@ def is_copy(cadence: Cadence, told: Reported) -> bool:
         # Who walks evenly reports the same again, but at his unit's own time.
         waited_s, usual_s = told.t - last.t, cadence.usual_s
         if usual_s is not None and waited_s < SOON * usual_s:
-            return True
+            return not (len(cadence.spans_s) < SPANS_LEAST and left_some_out(usual_s / waited_s))
         period_s = cadence.period_s
         return whole_of_it and period_s is not None and not is_whole(waited_s / period_s)
     # One that is older than another has to be the same in every number, of which a heading is one.
     return whole_of_it and any(says_the_same(one, told) for one in older)
+
+
+def left_some_out(times: float) -> bool:
+    """Whether what was seen of a unit so far may have left out some of its reports.
+
+    Args:
+        times: the usual time between those that came, in times since the last one.
+    """
+    return times < FEW + EVEN and abs(times - round(times)) <= EVEN
 
 
 def walks_on(cadence: Cadence, told: Reported, period_s: float) -> bool:

@@ -161,9 +161,12 @@ def test_who_stands_while_his_unit_says_nothing_has_not_walked_on() -> None:
 
 @pytest.mark.parametrize("step_m", [0.8, 0.0])
 @pytest.mark.parametrize("before", [1, 2, 4])
-def test_reports_that_are_all_alike_after_an_early_silence_are_no_copies(before: int, step_m: float) -> None:
+@pytest.mark.parametrize("silent_s", [1, 2, 5, 8, 35])
+def test_reports_that_are_all_alike_after_an_early_silence_are_no_copies(
+    before: int, silent_s: int, step_m: float
+) -> None:
     """Who walks evenly, or stands: the silence is not the usual time between two reports."""
-    epochs = [*range(1, before + 1), *range(40, 70)]
+    epochs = [*range(1, before + 1), *range(before + 1 + silent_s, before + silent_s + 31)]
     steps = [Displacement(t=float(t), node="ff1", delta_m=(step_m, 0.0, 0.0)) for t in epochs]
     last = shown(steps)[-1]
     assert last.t == epochs[-1]
