@@ -21,7 +21,8 @@ from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.images.alternatives import Mode, alternatives_now
 from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.keyframes.priors import own_priors
+from estimator.smoothing.keyframes.walks import PLACES, STATES
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
@@ -95,6 +96,7 @@ def explain(
         _row(state, rows, solved, flat, i, float(power[i])) for i in np.argsort(-power)[:HELD_MAX].tolist()
     ]
     listed += _walked(layout, solved, across, total)
+    listed += _known(problem, solved, across, total)
     held = sorted(_joined(listed), key=lambda m: -m.share)[:HELD_MAX]
     held = [m for m in held if m.share > 1e-4]
     bad = np.flatnonzero((solved.weighted.good < 0.5) & (rows.t > epoch - RECENT_S))
@@ -203,3 +205,33 @@ def _walked(layout: Layout, solved: Solution, across: Array, total: float) -> li
             )
         )
     return found
+
+
+def _known(problem: Problem, solved: Solution, across: Array, total: float) -> list[Measurement]:
+    """What was known beforehand of each node, where it began and how its unit errs, as one measurement."""
+    layout, known = problem.layout, own_priors(problem.layout, ())
+    power = np.zeros(len(across))
+    np.add.at(power, known.at, known.information * (across[known.at] ** 2).sum(axis=1) / total)
+    off, sigma = np.zeros(len(across)), np.zeros(len(across))
+    off[known.at], sigma[known.at] = solved.x[known.at] - known.mean, known.information**-0.5
+    size, owners = layout.length * layout.width, layout.state.owners
+    began = [
+        (walk.number, float(layout.times[walk.first, i]), walk.first * layout.width + STATES * i, STATES)
+        for i, walk in enumerate(layout.walks)
+    ]
+    for row in layout.state.ledger.table("stands"):
+        number = int(row[1])
+        began.append((number, float(row[0]), size + layout.stands[number], PLACES))
+    return [
+        Measurement(
+            kind="prior",
+            t=t,
+            a=owners[number],
+            value=0.0,
+            residual=float(np.linalg.norm(off[start : start + 2])),
+            sigma=float(sigma[start]),
+            weight=1.0,
+            share=float(power[start : start + numbers].sum()),
+        )
+        for number, t, start, numbers in began
+    ]

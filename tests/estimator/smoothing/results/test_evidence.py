@@ -5,7 +5,8 @@ import math
 import pytest
 
 from estimator import trackers
-from estimator.measurements import AnyReading
+from estimator.measurements import AnyReading, Node
+from estimator.measurements.displacement import Displacement
 from estimator.measurements.position import Position
 from estimator.measurements.range import Range
 from estimator.measurements.retire import Retire
@@ -25,6 +26,24 @@ def test_the_shares_of_all_currents_add_up_to_one() -> None:
     assert sum(m.share for m in found.held) + found.rest == pytest.approx(1.0, abs=1e-9)
     assert all(m.share >= 0.0 for m in found.held)
     assert [m.share for m in found.held] == sorted((m.share for m in found.held), reverse=True)
+
+
+def test_who_has_hardly_been_measured_is_held_by_where_he_is_taken_to_have_begun() -> None:
+    base = Node(t=0.0, node="base", role="base", position_m=(0.0, 0.0, 0.0))
+    step = Displacement(t=1.0, node="ff1", delta_m=(3.0, 4.0, 0.0))
+    found = SMOOTHER.evidence([base, Node(t=0.0, node="ff1", role="responder"), step], "ff1")
+    assert found is not None
+    assert [(m.kind, m.a) for m in found.held] == [("prior", "ff1"), ("displacement", "ff1")]
+    assert found.held[0].share > 0.99
+    assert sum(m.share for m in found.held) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_an_anchor_is_held_by_what_was_told_of_it() -> None:
+    found = SMOOTHER.evidence(walk(), "anchor")
+    assert found is not None
+    assert (found.held[0].kind, found.held[0].a) == ("prior", "anchor")
+    assert found.held[0].sigma == pytest.approx(0.05)
+    assert found.held[0].share > 0.5
 
 
 def test_a_sharp_fix_now_holds_the_position_alone() -> None:
