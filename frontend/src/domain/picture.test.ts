@@ -2,7 +2,9 @@ import { expect, test } from "vitest";
 import { pictureOf, withDelta } from "./picture";
 import { A_BREAK, A_DELAY, aDelta, aFrame, aNode, anAlarm, NOON } from "./samples";
 
-const before = pictureOf(aFrame([aNode(), aNode({ node: "ff2" })], { alarms: [anAlarm()] }));
+const before = pictureOf(
+  aFrame([aNode(), aNode({ node: "ff2", callsign: "E7-2" })], { alarms: [anAlarm()] }),
+);
 
 test("a delta replaces the nodes it names whole and leaves the others", () => {
   const after = withDelta(before, aDelta([aNode({ callsign: null, position_m: [5, 6, 7] })]));

@@ -1,9 +1,13 @@
 /** The picture on the screen: the newest frame with the deltas since, as an immutable value. */
+import { toldApart } from "./people/namesakes";
 import type { DeltaMessage, FrameAlarm, FrameMessage, FrameNode } from "./types";
 
 /** A node as the server presented it, and the incident time at which it did. */
 export interface Sighting {
+  /** With a callsign that tells it from who is called alike. */
   readonly state: FrameNode;
+  /** The callsign that it was given. */
+  readonly callsign: FrameNode["callsign"];
   readonly presentedT: number;
 }
 
@@ -35,10 +39,28 @@ export function isBehind({ notices }: Pick<FrameMessage, "notices">): boolean {
   return notices.some(({ code }) => code === "estimator_behind");
 }
 
+function sightingOf(state: FrameNode, presentedT: number): Sighting {
+  return { state, callsign: state.callsign, presentedT };
+}
+
+/** Give who is called alike callsigns of their own, and back what they were given once nobody else is called so. */
+function tellApart(nodes: Map<string, Sighting>): void {
+  const given = Array.from(nodes.values(), ({ state, callsign }) =>
+    state.callsign === callsign ? state : { ...state, callsign },
+  );
+  const apart = toldApart(given);
+  for (const [node, { state, callsign, presentedT }] of nodes) {
+    const shown = apart.get(node) ?? callsign;
+    if (state.callsign !== shown)
+      nodes.set(node, { state: { ...state, callsign: shown }, callsign, presentedT });
+  }
+}
+
 /** The picture that a whole frame shows. */
 export function pictureOf(frame: FrameMessage): Picture {
   const nodes = new Map<string, Sighting>();
-  for (const state of frame.nodes) nodes.set(state.node, { state, presentedT: frame.clock_t });
+  for (const state of frame.nodes) nodes.set(state.node, sightingOf(state, frame.clock_t));
+  tellApart(nodes);
   return {
     incident: frame.incident,
     seq: frame.seq,
@@ -57,7 +79,8 @@ export function pictureOf(frame: FrameMessage): Picture {
 /** The picture after a delta: its nodes replace theirs whole, its alarms are all that stand. */
 export function withDelta(picture: Picture, delta: DeltaMessage): Picture {
   const nodes = new Map(picture.nodes);
-  for (const state of delta.nodes) nodes.set(state.node, { state, presentedT: delta.clock_t });
+  for (const state of delta.nodes) nodes.set(state.node, sightingOf(state, delta.clock_t));
+  tellApart(nodes);
   return {
     ...picture,
     seq: delta.seq,

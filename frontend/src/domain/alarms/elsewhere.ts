@@ -1,5 +1,6 @@
 /** Calls for help in incidents other than the one that is shown. */
 
+import { toldApart } from "../people/namesakes";
 import { isBehind, standsStill } from "../picture";
 import { type IncidentClock, incidentTime } from "../time/clock";
 import type { FrameAlarm, FrameMessage, FrameNode, Incident } from "../types";
@@ -10,7 +11,7 @@ import { byUrgency, inOrder, isCall, type StandingAlarm, standingAlarms } from "
 export interface Shown {
   readonly seq: number;
   readonly clock_t: number;
-  readonly nodes: readonly Pick<FrameNode, "node" | "callsign">[];
+  readonly nodes: readonly Pick<FrameNode, "node" | "callsign" | "role" | "status">[];
   readonly alarms: readonly FrameAlarm[];
   readonly notices: FrameMessage["notices"];
 }
@@ -43,9 +44,10 @@ export interface CallElsewhere {
 export function glimpseOf(incident: Incident, frame: Shown, localMs: number): Glimpse {
   const calls = inOrder(standingAlarms(frame.alarms.filter(({ alarm }) => isCall(alarm))));
   const calling = new Set(calls.map(({ alarm }) => alarm.node));
+  const apart = toldApart(frame.nodes);
   const names = frame.nodes
     .filter(({ node }) => calling.has(node))
-    .map((node): [string, string] => [node.node, nameOf(node)]);
+    .map((node): [string, string] => [node.node, apart.get(node.node) ?? nameOf(node)]);
   const clock = { t: frame.clock_t, localMs, rate: incident.clock === "live" ? 1 : 0 };
   return {
     seq: frame.seq,

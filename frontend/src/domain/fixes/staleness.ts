@@ -83,7 +83,10 @@ export function toldAt(
 }
 
 /** Covariance at `now` (m²): the server's, grown by what a moving node may have walked since. */
-export function covarianceAt({ state, presentedT }: Sighting, now: number): Covariance | null {
+export function covarianceAt(
+  { state, presentedT }: Pick<Sighting, "state" | "presentedT">,
+  now: number,
+): Covariance | null {
   const covariance = state.covariance_m2 ?? null;
   if (covariance === null || !isMoving(state.role) || state.status === "retired") return covariance;
   const grownS2 = growthS2(ageS(state, now)) - growthS2(ageS(state, presentedT));

@@ -35,12 +35,12 @@ export function withStoreysAged(
 ): Picture | null {
   if (picture === null || levels.length === 0) return picture;
   const aged = [...picture.nodes].flatMap(([node, sighting]): [string, Sighting][] => {
-    const { state, presentedT } = sighting;
+    const { state } = sighting;
     const covariance = covarianceAt(sighting, now);
     if (state.level_p == null || state.position_m == null || covariance === null) return [];
     if (covariance === state.covariance_m2) return [];
     const level_p = storeyProbability(levels, state.position_m[2], covariance[5]);
-    return [[node, { state: { ...state, level_p }, presentedT }]];
+    return [[node, { ...sighting, state: { ...state, level_p } }]];
   });
   return aged.length === 0 ? picture : { ...picture, nodes: new Map([...picture.nodes, ...aged]) };
 }

@@ -33,7 +33,7 @@ test("who does not say a name is told of all the same", () => {
 
 test("who is nowhere because the readings come too late is told so, whether the board knows of him or not", () => {
   const nowhere = aNode({ node: "ff1", callsign: "E7-1", position_m: null, covariance_m2: null });
-  const placed = aNode({ node: "ff2" });
+  const placed = aNode({ node: "ff2", callsign: "E7-2" });
   const picture = pictureOf(aFrame([nowhere, placed], { notices: ["ff1", "ff2", "ff9"].map(late) }));
   expect(unplaced(picture, NOON)).toEqual([
     { names: ["E7-1", "ff9"], why: "3 readings so far came late", gateway: null, heard_s: null },
