@@ -27,6 +27,19 @@ def alike(before: list[Pixels], after: list[Pixels]) -> bool:
     )
 
 
+def test_a_recording_in_which_there_is_nothing_yet_shows_no_time(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    post.open_incident("Empty")
+    incident = post.open_incident("Begun")
+    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]))
+    commander.opens(server.url, incident)
+    commander.chooses_incident("Empty")
+    eventually(lambda: (commander.incident, commander.clock) == ("Empty", "–"))
+    eventually(lambda: commander.counts.startswith("0 responders"))
+    assert commander.clock == "–"
+
+
 def test_a_time_of_another_day_is_told_with_its_day_also_in_the_list_of_incidents(
     server: Server, post: Post, commander: Commander
 ) -> None:

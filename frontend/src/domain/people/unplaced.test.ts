@@ -2,6 +2,7 @@ import { expect, test } from "vitest";
 import { pictureOf } from "../picture";
 import { aFrame, aNode, NOON } from "../samples";
 import type { FrameMessage } from "../types";
+import { nameInText } from "../words";
 import { unplaced, unplacedInWords, whyUnplaced } from "./unplaced";
 
 type Aside = FrameMessage["set_aside"][number];
@@ -28,7 +29,8 @@ test("those whom one reason keeps from the map stand together, with when one of 
 
 test("who does not say a name is told of all the same", () => {
   const [found] = unplaced(pictureOf(aFrame([], { set_aside: [anAside("")] })), NOON);
-  expect(found?.names).toEqual(["a unit that does not say its name"]);
+  expect(found?.names).toEqual(["a unit without a name"]);
+  expect(found?.names.map(nameInText)).toEqual(found?.names);
 });
 
 test("who is nowhere because the readings come too late is told so, whether the board knows of him or not", () => {

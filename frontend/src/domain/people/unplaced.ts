@@ -18,7 +18,8 @@ export interface Unplaced {
  * origin from which their latitudes count. */
 const NOT_PLACING: ReadonlySet<string> = new Set(["too_late", "no_origin"]);
 
-const NAMELESS = "a unit that does not say its name";
+/** As short as a name beside a mark: it does not give way in its middle. */
+const NAMELESS = "a unit without a name";
 
 /** One entry for each reason, with all whom it keeps from the map. */
 export function unplaced(picture: Picture | null, now: number): Unplaced[] {
