@@ -23,6 +23,8 @@ from estimator.measurements.displacement import Displacement
 
 SOON = 0.75
 """A copy comes in less of its original's time; the next report that says the same by chance does not."""
+TIMELY = 0.08
+"""How far off a unit's own time its reports come, in times between two of them."""
 FEW, EVEN = 10, 0.03
 """Of a unit hardly known the usual time may be so many of its own, and is then a whole number as closely."""
 BELIEVED = -math.log(9.0)
@@ -90,15 +92,17 @@ def is_copy(cadence: Cadence, told: Reported) -> bool:
     """
     *older, last = cadence.recent
     whole_of_it = told.heading_rad is not None and math.hypot(*told.delta_m) > COPY
+    # Who walks evenly reports the same again, but at his unit's own time.
+    waited_s, usual_s, period_s = told.t - last.t, cadence.usual_s, cadence.period_s
     if says_the_same(last, told):
-        # Who walks evenly reports the same again, but at his unit's own time.
-        waited_s, usual_s = told.t - last.t, cadence.usual_s
         if usual_s is not None and waited_s < SOON * usual_s:
             return not (len(cadence.spans_s) < SPANS_LEAST and left_some_out(usual_s / waited_s))
-        period_s = cadence.period_s
         return whole_of_it and period_s is not None and not is_whole(waited_s / period_s)
-    # One that is older than another has to be the same in every number, of which a heading is one.
-    return whole_of_it and any(says_the_same(one, told) for one in older)
+    # One that is older than another has to be the same in every number, of which a heading is one. Units
+    # round them: what comes at its unit's own time is told by it, though it has told the same before.
+    times = None if usual_s is None else waited_s / (period_s or usual_s)
+    timely = times is not None and times > 0.5 and abs(times - round(times)) <= TIMELY
+    return whole_of_it and not timely and any(says_the_same(one, told) for one in older)
 
 
 def left_some_out(times: float) -> bool:

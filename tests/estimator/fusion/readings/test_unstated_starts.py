@@ -139,6 +139,24 @@ def test_copies_are_said_to_be_some_once() -> None:
     ]
 
 
+@pytest.mark.parametrize(("by_m", "by_rad"), [(0.05, 0.01), (0.1, 0.05)])
+def test_a_unit_that_rounds_what_it_reports_tells_no_copies(by_m: float, by_rad: float) -> None:
+    """Along a corridor it soon reports what it has reported seconds ago, heading and all."""
+    chance = np.random.default_rng(713)
+    reports = [
+        Displacement(
+            t=float(second),
+            node="ff1",
+            delta_m=(by_m * round(float(chance.normal(0.8, 0.08)) / by_m), 0.0, 0.0),
+            heading_rad=by_rad * round(float(chance.normal(0.0, 0.01)) / by_rad),
+        )
+        for second in range(1, 101)
+    ]
+    last = shown(reports)[-1]
+    assert last.position_m is not None
+    assert last.position_m[0] == pytest.approx(sum(r.delta_m[0] for r in reports), rel=0.01)
+
+
 def test_a_unit_that_steps_evenly_is_not_taken_for_two() -> None:
     steps = [
         Displacement(t=0.1 * k, node="ff1", delta_m=(0.1, 0.0, 0.0), heading_rad=0.0) for k in range(100)
