@@ -64,6 +64,11 @@ class Cadence(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return spans_s[3 * len(spans_s) // 4] if spans_s else None
 
     @property
+    def middle_s(self) -> float | None:
+        """The median time between two reports (s): a unit's own, if few are lost. None: not known."""
+        return sorted(self.spans_s)[len(self.spans_s) // 2] if self.spans_s else None
+
+    @property
     def period_s(self) -> float | None:
         """The period at which it reports (s), lost ones counted; None: it has none, or none is known yet."""
         if len(self.spans_s) < SPANS_LEAST:

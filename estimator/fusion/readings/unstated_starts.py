@@ -96,13 +96,20 @@ def is_copy(cadence: Cadence, told: Reported) -> bool:
     waited_s, usual_s, period_s = told.t - last.t, cadence.usual_s, cadence.period_s
     if says_the_same(last, told):
         if usual_s is not None and waited_s < SOON * usual_s:
-            return not (len(cadence.spans_s) < SPANS_LEAST and left_some_out(usual_s / waited_s))
+            own = len(cadence.spans_s) < SPANS_LEAST or is_timely(waited_s, cadence.middle_s)
+            return not (own and left_some_out(usual_s / waited_s))
         return whole_of_it and period_s is not None and not is_whole(waited_s / period_s)
     # One that is older than another has to be the same in every number, of which a heading is one. Units
     # round them: what comes at its unit's own time is told by it, though it has told the same before.
-    times = None if usual_s is None else waited_s / (period_s or usual_s)
-    timely = times is not None and times > 0.5 and abs(times - round(times)) <= TIMELY
+    timely = is_timely(waited_s, period_s or usual_s)
     return whole_of_it and not timely and any(says_the_same(one, told) for one in older)
+
+
+def is_timely(waited_s: float, between_s: float | None) -> bool:
+    """Whether a report comes some whole times of the time between two after another (None: not known)."""
+    if between_s is None or waited_s < 0.5 * between_s:
+        return False
+    return abs(waited_s / between_s - round(waited_s / between_s)) <= TIMELY
 
 
 def left_some_out(times: float) -> bool:

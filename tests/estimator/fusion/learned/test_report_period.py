@@ -63,3 +63,8 @@ def test_what_copies_can_be_of_is_some_seconds_old_and_no_habit_is_certain() -> 
 def test_a_silence_is_no_usual_time_between_reports() -> None:
     assert after([0.0, 1.0, 2.0, 98.0]).usual_s == 1.0
     assert after([0.0, 98.0]).usual_s is None
+
+
+def test_the_middle_time_is_a_units_own_where_some_reports_are_lost() -> None:
+    assert after([0.0, 1.0, 3.0, 4.0, 7.0, 8.0]).middle_s == 1.0
+    assert Cadence().middle_s is None

@@ -192,6 +192,14 @@ def test_reports_that_are_all_alike_after_an_early_silence_are_no_copies(
     assert last.position_m[0] >= 0.99 * step_m * len(epochs)
 
 
+def test_who_walks_evenly_has_walked_all_that_came_where_three_reports_in_ten_are_lost() -> None:
+    epochs = [float(second) for second in range(1, 101) if second * 7 % 10 not in (1, 3, 4)]
+    last = shown([Displacement(t=t, node="ff1", delta_m=(1.0, 0.0, 0.0)) for t in epochs])[-1]
+    assert last.position_m is not None
+    assert last.position_m[0] >= 0.99 * len(epochs)
+    assert outside(last.position_m, last.covariance_m2, np.array([100.0, 0.0])) < INSIDE
+
+
 def test_what_a_unit_reports_after_its_bearer_has_left_is_said_to_be_set_aside_and_no_copy() -> None:
     steps = [Displacement(t=float(t), node="ff1", delta_m=(0.8, 0.0, 0.0)) for t in (1, 2, 3, 40, 41, 42, 43)]
     tracker = KirchhoffTracker()
