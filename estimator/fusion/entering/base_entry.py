@@ -53,14 +53,14 @@ def gone_since_m(node: NodeState, s: float) -> float:
 def turned_since(state: FusionState, node: NodeState, t: float) -> float | None:
     """How unsure it is by now what the frame of somebody's unit was told to face, if that tells (rad).
 
-    Its gyro has turned it ever since it was switched on.
+    Its gyro has turned it ever since it was switched on. Of who was introduced too late it is taken as told.
 
     Args:
         state: the fusion.
         node: who moves, found by readings.
         t: the epoch (s).
     """
-    if not may_be_inside(state, node, t):
+    if node.inside or not may_be_inside(state, node, t):
         return node.heading_sigma_rad
     on_s = min(inside_s(state, node, t), LONGEST_S)
     return math.hypot(turn_sigma(node), state.bias_sigma_radps(node) * on_s)
