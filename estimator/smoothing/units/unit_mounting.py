@@ -37,7 +37,7 @@ another way is told along, at most as likely as what is shown. Powers share thei
 none: by them alone it is open, and no more."""
 BENT = 2.5
 """A heading that a solution has so many sigmas off from what was told of it speaks against what was told."""
-GONE_M = 5.0
+GONE_M = 2.0
 """Who has gone less has hardly told how his unit is worn."""
 MOST, SOME = 4, 3
 """Of so many units it is asked where anything speaks against one; of so many where not."""

@@ -122,6 +122,27 @@ def test_of_two_units_that_face_apart_nobody_knows_which_was_told_wrongly_and_no
             assert outside(p.position_m, p.covariance_m2, way[name][round(p.t)]) < SURE
 
 
+def test_sharp_ranges_tell_after_a_few_steps_what_a_unit_faced() -> None:
+    """Four metres among four anchors: the smoothed way is right, and no ellipse leaves him out."""
+    chance, at, way = np.random.default_rng(5), np.zeros(2), [np.zeros(2)]
+    corners = {"a": (-3.0, -2.0), "b": (3.0, -2.5), "c": (2.5, 3.0), "d": (-2.5, 2.5)}
+    readings: list[AnyReading] = [BASE, _node("ff1", (0.0, 0.0, 0.0))]
+    for name, place in corners.items():
+        readings.append(Node(t=0.0, node=name, role="anchor", position_m=(*place, 0.0), sigma_m=0.05))
+    for second in range(1, 15):
+        step_m = 0.3 * np.array([math.cos(0.2 * second), math.sin(0.2 * second)])
+        at = at + step_m
+        way.append(at)
+        east, north = (np.array(ELSEWHERE[1].of(*step_m)) + chance.normal(0.0, 0.01, 2)).tolist()
+        readings.append(Displacement(t=float(second), node="ff1", delta_m=(east, north, 0.0)))
+        for name, place in corners.items():
+            range_m = math.dist(at, place) + float(chance.normal(0.0, 0.1))
+            readings.append(Range(t=float(second), a="ff1", b=name, range_m=range_m, technology="uwb"))
+    for p in BatchSmoother().smooth(readings)["ff1"]:
+        assert math.dist(p.position_m[:2], way[round(p.t)]) < 0.5
+        assert outside(p.position_m, p.covariance_m2, way[round(p.t)]) < SURE
+
+
 @pytest.mark.parametrize("seed", range(2))
 def test_units_worn_the_right_way_are_believed(seed: int) -> None:
     wrong, said = followed(*entry(RIGHT, seed))
