@@ -21,6 +21,7 @@ from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.recent_places import Mark, TrailEnd, end_of, table_of_marks
 from estimator.fusion.motion.silence import SILENT_S
+from estimator.fusion.readings.impossible_ranges import is_impossible
 from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.readings.repeated_ranges import is_repeated
 from estimator.fusion.rows.rows import FIELDS, table_from
@@ -80,6 +81,9 @@ class Pairs:
             t, name_a, name_b = reading.t, reading.a, reading.b
             a = named.get(name_a) or self._name(name_a, t)
             b = named.get(name_b) or self._name(name_b, t)
+            if isinstance(reading, Range) and is_impossible(state, reading, a.node, b.node):
+                state.count("not_fused")
+                continue
             between, crossing = a.decided and b.decided, False
             if not between and not self._sights(a.node, b.node, reading):
                 continue
