@@ -21,8 +21,9 @@ from estimator.fusion.motion.silence import LONGEST_S, gone_m2
 from estimator.measurements.base import PairReading
 from estimator.measurements.bearing import Bearing
 
-ENTERS = 0.5
-"""How likely it is that who is heard of late has only come now."""
+ENTERS, ON_THE_ROSTER = 0.5, 0.9
+"""How likely it is that who is heard of late has only come now; and who had been introduced long before: most
+units are switched on at the door."""
 
 
 def inside_s(state: FusionState, node: NodeState, t: float) -> float:
@@ -66,6 +67,11 @@ def turned_since(state: FusionState, node: NodeState, t: float) -> float | None:
     return math.hypot(turn_sigma(node), state.bias_sigma_radps(node) * on_s)
 
 
+def _enters(node: NodeState) -> float:
+    """How likely it is that somebody who is heard of late has only come now."""
+    return ON_THE_ROSTER if node.named else ENTERS
+
+
 class BasePrior(NamedTuple):
     """What is known without any reading of who may just have entered.
 
@@ -100,7 +106,7 @@ def prior_at_base(state: FusionState, node: NodeState, t: float) -> BasePrior | 
         state.base_place(),
         sigma_m,
         reach_m,
-        math.log(ENTERS / (1.0 - ENTERS)) + 2.0 * math.log(reach_m / sigma_m),
+        math.log(_enters(node) / (1.0 - _enters(node))) + 2.0 * math.log(reach_m / sigma_m),
     )
 
 
@@ -129,7 +135,7 @@ def begin_at_base(state: FusionState, node: NodeState, t: float) -> None:
     long_s = inside_s(state, node, t)
     late = long_s > physics.UNSEEN_S
     if late:
-        across = math.hypot(across, math.sqrt(1.0 - ENTERS) * gone_since_m(node, long_s))
+        across = math.hypot(across, math.sqrt(1.0 - _enters(node)) * gone_since_m(node, long_s))
         upwards = physics.UNDECIDED_UP_SIGMA_M
     known = replace(node.absolute, beginning="unheard" if late else "assumed")
     place(state, replace(node, absolute=known), t, state.base_place(), (across, across, upwards))

@@ -131,6 +131,18 @@ def test_who_is_introduced_as_he_enters_is_at_the_base_however_late_that_is() ->
     assert math.sqrt(covariance[0]) < 4.0
 
 
+def test_who_has_been_on_the_roster_for_long_is_more_likely_to_enter_only_now_and_still_not_surely() -> None:
+    """Most units are switched on at the door."""
+    told = Node(t=1.0, node="ff1", role="responder")
+    strangers, known = (
+        followed([*others_inside(LATE), *some, *walked((0.0, 0.0), 20, [])])[-1][1] for some in ([], [told])
+    )
+    assert off_m(known, way((0.0, 0.0), LATE + 19)) < 2.0
+    assert known.covariance_m2 is not None
+    assert strangers.covariance_m2 is not None
+    assert 5.0 < math.sqrt(known.covariance_m2[0]) < 0.5 * math.sqrt(strangers.covariance_m2[0])
+
+
 def test_whom_ranges_have_named_first_walks_once_his_unit_reports() -> None:
     start, chance = (40.0, 4.0), np.random.default_rng(2)
     before = [
