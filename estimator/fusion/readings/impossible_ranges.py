@@ -5,6 +5,8 @@ as two can be apart is another thing: taken as an outlier it still pulls, and wh
 delays and scales would explain it by whatever is least unlikely.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from estimator.fusion.memory.nodes import NodeState
@@ -19,7 +21,9 @@ UNHEARD_OF_M = 1000.0
 """No radio that a firefighter wears or drops is ranged from farther off, wherever it is."""
 
 
-def is_impossible(state: FusionState, reading: Range, a: NodeState, b: NodeState) -> bool:
+def is_impossible(
+    state: FusionState, reading: Range, a: NodeState, b: NodeState, covariance: Callable[[], Array]
+) -> bool:
     """Whether a range is far longer than both can be apart; said of each two once.
 
     Args:
@@ -27,6 +31,7 @@ def is_impossible(state: FusionState, reading: Range, a: NodeState, b: NodeState
         reading: the range.
         a: one end.
         b: the other one.
+        covariance: gives that of all places, of which such a range alone asks.
     """
     if reading.range_m <= FAR_M:
         return False
@@ -35,7 +40,7 @@ def is_impossible(state: FusionState, reading: Range, a: NodeState, b: NodeState
         apart_m = float(np.linalg.norm(_place_m(state, a) - _place_m(state, b)))
         if reading.range_m <= FAR_M + TIMES * apart_m:
             return False
-        most_m = FAR_M + TIMES * (apart_m + SIGMAS * _sigma_m(state, a, b))
+        most_m = FAR_M + TIMES * (apart_m + SIGMAS * _sigma_m(state, a, b, covariance()))
         likely = f", where {apart_m:.0f} m are likely"
     if reading.range_m <= most_m:
         return False
@@ -49,9 +54,9 @@ def _place_m(state: FusionState, node: NodeState) -> Array:
     return np.array(node.place_m) if node.mode == "fixed" else state.graph.value(node.position)
 
 
-def _sigma_m(state: FusionState, a: NodeState, b: NodeState) -> float:
+def _sigma_m(state: FusionState, a: NodeState, b: NodeState, covariance: Array) -> float:
     """Standard deviation of how far apart two are, at most (m)."""
-    covariance, total = state.graph.covariance(), 0.0
+    total = 0.0
     for node in (a, b):
         if node.mode != "fixed":
             rows = state.graph.rows(node.position)

@@ -70,6 +70,7 @@ class Pairs:
         self._technologies: list[Technology] = []
         self._held: dict[str, int] = {}
         self._sighted: dict[str, int] = {}
+        self._known: Array | None = None
         self.fused_t: dict[str, float] = {}
         self.epochs: Array = np.zeros(0)
 
@@ -81,7 +82,7 @@ class Pairs:
             t, name_a, name_b = reading.t, reading.a, reading.b
             a = named.get(name_a) or self._name(name_a, t)
             b = named.get(name_b) or self._name(name_b, t)
-            if isinstance(reading, Range) and is_impossible(state, reading, a.node, b.node):
+            if isinstance(reading, Range) and is_impossible(state, reading, a.node, b.node, self._covariance):
                 state.count("not_fused")
                 continue
             between, crossing = a.decided and b.decided, False
@@ -147,6 +148,12 @@ class Pairs:
         state.ledger.extend("pairs", made.entered)
         self.epochs = made.epochs
         return made.table
+
+    def _covariance(self) -> Array:
+        """Of all places, once for all ranges of the tick that are too long: a gateway may send many such."""
+        if self._known is None:
+            self._known = self._state.graph.covariance()
+        return self._known
 
     def _name(self, name: str, t: float) -> Named:
         node = self._state.node_of(name, "breadcrumb", t)

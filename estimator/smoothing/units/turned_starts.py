@@ -54,7 +54,7 @@ def as_turned(problem: Problem, x: Array, number: int) -> tuple[Mounting, Array]
     layout, index = problem.layout, _index(problem.layout, number)
     walk, there = layout.walks[index], x.copy()
     states = layout.states(there, index)
-    by_rad = float(states[reports_from(layout, index), HEADING]) - _begun_rad(layout, number)
+    by_rad = float(states[reports_from(layout, index), HEADING]) - told_turn(layout, number)[0]
     states[walk.first : walk.last + 1, HEADING] -= by_rad
     return Mounting(False, within_pi(layout.state.life(number).worn[1] + by_rad)), there
 
@@ -64,11 +64,12 @@ def same_turn(one: Mounting, other: Mounting) -> bool:
     return one.mirrored == other.mirrored and abs(within_pi(one.turned_rad - other.turned_rad)) < SAME_RAD
 
 
+def told_turn(layout: Layout, number: int) -> tuple[float, float]:
+    """What ψ was told to be where the unit of a node began: mean and standard deviation (rad)."""
+    begins = layout.state.ledger.table("begins")
+    mean_rad, sigma_rad = begins[(begins[:, 1] == number) & (begins[:, 2] == 1.0)][-1, 10:12].tolist()
+    return mean_rad, sigma_rad
+
+
 def _index(layout: Layout, number: int) -> int:
     return next(i for i, walk in enumerate(layout.walks) if walk.number == number)
-
-
-def _begun_rad(layout: Layout, number: int) -> float:
-    """What ψ was expected to be where the unit began (rad)."""
-    begins = layout.state.ledger.table("begins")
-    return float(begins[(begins[:, 1] == number) & (begins[:, 2] == 1.0)][-1, 10])

@@ -29,6 +29,7 @@ from estimator.smoothing.keyframes.walks import HEADING, STATES
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.units.mounting_hypotheses import SLACKS_M, MountingHypothesis, hypotheses
+from estimator.smoothing.units.turned_starts import told_turn
 
 CLEARER, OPEN = 20.0, 2.0
 """A unit is taken to be worn another way where that is likelier by this much (log odds): a window that was
@@ -114,12 +115,12 @@ def bent_headings(layout: Layout, x: Array) -> dict[int, float]:
         layout: of a window.
         x: its solution, flat.
     """
-    begins, found = layout.state.ledger.table("begins"), dict[int, float]()
+    found = dict[int, float]()
     for i, walk in enumerate(layout.walks):
         if walk.way is not None and walk.begins:
-            told_rad, sigma_rad = begins[(begins[:, 1] == walk.number) & (begins[:, 2] == 1.0)][-1, 10:12]
-            faced_rad = layout.states(x, i)[reports_from(layout, i), HEADING]
-            sigmas = abs(within_pi(float(faced_rad - told_rad))) / float(sigma_rad)
+            told_rad, sigma_rad = told_turn(layout, walk.number)
+            faced_rad = float(layout.states(x, i)[reports_from(layout, i), HEADING])
+            sigmas = abs(within_pi(faced_rad - told_rad)) / sigma_rad
             if sigmas > BENT:
                 found[walk.number] = sigmas
     return found
@@ -258,7 +259,7 @@ def _kept(layout: Layout, x: Array) -> list[Mode]:
                 mode, images = found.setdefault(other.mode, (mode, images))
                 own = slice(at[node.index], at[node.index] + 2)
                 mode.x[own] = other.image.of(x[own])
-                if other.image.matrix[0, 0] < 1.0:
+                if other.image.flip < 0.0 or other.image.cosine < 1.0:
                     images[node.index] = other.image
     return [mode for mode, _ in found.values()]
 

@@ -81,20 +81,20 @@ def says(range_m: float) -> Range:
 @given(st.floats(0.1, 2000.0), st.floats(0.0, 3.0))
 def test_what_walls_and_echoes_make_too_long_is_never_set_aside(apart_m: float, times: float) -> None:
     state, base, crumb = known(apart_m, 0.3)
-    assert not is_impossible(state, says(apart_m * (1.0 + times) + 60.0), base, crumb)
+    assert not is_impossible(state, says(apart_m * (1.0 + times) + 60.0), base, crumb, state.graph.covariance)
 
 
 def test_a_range_is_held_against_how_surely_both_lie_where_they_are() -> None:
     state, base, crumb = known(5.0, 0.3)
     far_m = FAR_M + TIMES * 50.0
-    assert is_impossible(state, says(far_m), base, crumb)
+    assert is_impossible(state, says(far_m), base, crumb, state.graph.covariance)
     assert len(state.notices) == 1
     state, base, crumb = known(5.0, 100.0)
-    assert not is_impossible(state, says(far_m), base, crumb)
+    assert not is_impossible(state, says(far_m), base, crumb, state.graph.covariance)
 
 
 def test_to_a_node_of_which_nothing_is_known_any_range_of_a_radio_is_possible() -> None:
     state = FusionState()
     base, unknown = (state.node_of(name, "breadcrumb", 0.0) for name in ("b1", "b2"))
-    assert not is_impossible(state, says(0.9 * UNHEARD_OF_M), base, unknown)
-    assert is_impossible(state, says(1.1 * UNHEARD_OF_M), base, unknown)
+    assert not is_impossible(state, says(0.9 * UNHEARD_OF_M), base, unknown, state.graph.covariance)
+    assert is_impossible(state, says(1.1 * UNHEARD_OF_M), base, unknown, state.graph.covariance)
