@@ -22,6 +22,7 @@ from estimator.fusion.update import update
 from estimator.inertial.samples import AnyFolded
 from estimator.measurements.altitude import Altitude, Pressure
 from estimator.measurements.bearing import Bearing
+from estimator.measurements.displacement import Displacement
 from estimator.measurements.drop import Drop
 from estimator.measurements.node import MOVING_ROLES
 from estimator.measurements.position import Position
@@ -41,6 +42,8 @@ EPOCH = attrgetter("t")
 
 def names_of(reading: AnyFolded | Crossing) -> tuple[str, ...]:
     """The nodes that a reading names."""
+    if type(reading) is Displacement:
+        return (reading.node,)
     if isinstance(reading, PAIRS):
         return reading.a, reading.b
     if isinstance(reading, Drop):

@@ -100,13 +100,14 @@ def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int)
             heard += 1
             radios[other] = HeardRadio(t, known.heard + 1, 0)
     for other, known in listener.radios.items():
-        away, again = known.silent >= silent, other in now
-        # Of the many that are out of reach nothing changes until they are heard again.
-        if (away and not again) or other in before:
+        if known.silent >= silent:
+            # Of the many that are out of reach nothing changes until they are heard again.
+            if other in now and other not in before:
+                crossed(occasions[-1], now[other], other)
             continue
-        if away:
-            crossed(occasions[-1], now[other], other)
+        if other in before:
             continue
+        again = other in now
         missed = known.silent + 1
         # Until it is thought to be out of reach, what is not heard of it counts as lost.
         if missed < silent or again:

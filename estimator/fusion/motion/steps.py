@@ -97,7 +97,7 @@ class Step:
     def take(self, reading: Displacement) -> Increment | None:
         """Hold a displacement against what its unit reported before; None where that covers its epoch."""
         t, pose_t, unit_t = reading.t, self._pose_t, self._unit_t
-        raw = isinstance(reading, InertialDisplacement)
+        raw = type(reading) is InertialDisplacement
         if t < pose_t or (unit_t is not None and t <= unit_t):
             return None
         start = start_of(reading, pose_t if unit_t is None else unit_t)
@@ -127,7 +127,7 @@ class Step:
             across, up = across + length**2, up + length**2
         still = own > 0.0 and length < physics.STILL_MPS * own and start <= pose_t
         turn, sets_off = self._stand(reading, still)
-        if isinstance(reading, InertialDisplacement):
+        if type(reading) is InertialDisplacement:
             up += reading.up_m2 + (physics.STRAPDOWN_SCALE_SIGMA * u) ** 2
             if reading.rested_radps > 0.0:
                 turn = Turn(t, 0.0, reading.rested_radps)
@@ -198,7 +198,7 @@ class Step:
         it, for the unit may yet show that it measures them; what it may have missed is told beside
         (decision 0012).
         """
-        if reading.delta_m[2] != 0.0 or isinstance(reading, InertialDisplacement):
+        if reading.delta_m[2] != 0.0 or type(reading) is InertialDisplacement:
             self._level, self._unseen_up_m2 = False, 0.0
         climbed_m2 = CLIMB_M2_PER_M * length if self._level else 0.0
         self._unseen_up_m2 += climbed_m2
@@ -264,7 +264,7 @@ def walk_noise(known: Vector3, reading: Displacement, length: float, duration: f
     e, n, u = known
     step = WALK_M2_PER_M * length if reading.sigma_m is None else reading.sigma_m**2
     position = step + STAND_M2_PER_S * duration + FLOOR_M2
-    if isinstance(reading, InertialDisplacement):
+    if type(reading) is InertialDisplacement:
         heading, bias = reading.turned_rad2, WARMING_PER_S * duration + reading.bias_rad2ps2
     else:
         heading, bias = TURN_RAD2_PER_M * length + TURN_RAD2_PER_S * duration, BIAS_PER_S * duration

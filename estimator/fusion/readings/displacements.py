@@ -37,7 +37,7 @@ def move_units(state: FusionState, readings: Sequence[Displacement], turns: list
             _count(state, reading, "not_fused")
             continue
         steps[reading.node] = step
-        if step.node.raw != isinstance(reading, InertialDisplacement):
+        if step.node.raw != (type(reading) is InertialDisplacement):
             set_aside(state, reading.node, reading.t)
             _count(state, reading, "not_fused")
         elif _extend(state, step, framed(step.node, reading), turns):
@@ -85,7 +85,7 @@ def _begin(state: FusionState, reading: Displacement) -> Step | None:
 
 def _count(state: FusionState, reading: Displacement, what: Count) -> None:
     """Count a displacement, unless samples have made it, which are counted."""
-    if not isinstance(reading, InertialDisplacement):
+    if type(reading) is not InertialDisplacement:
         state.count(what)
 
 

@@ -1,7 +1,6 @@
 """Readings between two nodes as they are held against the graph, all those of a tick together."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -35,20 +34,9 @@ NO_ROWS = np.empty((0, FIELDS))
 AnyPair = Range | Rssi | Bearing | Crossing
 
 
-class Named(NamedTuple):
-    """A node that a reading names.
-
-    Attributes:
-        node: the node.
-        number: its row among the ends of the tick's readings.
-        decided: readings can be held against its position.
-        fixed: its position is known exactly.
-    """
-
-    node: NodeState
-    number: int
-    decided: bool
-    fixed: bool
+Named = tuple[NodeState, int, bool, bool]
+"""A node that a reading names; its row among the ends of the tick's readings; whether readings can be held
+against its position; whether that is known exactly."""
 
 
 class Pairs:
@@ -79,37 +67,38 @@ class Pairs:
         state, named, told = self._state, self._named, self._told
         links, held, fused, fused_t = state.links, self._held, 0, self.fused_t
         for reading in readings:
+            # By its type it is told far sooner that a reading is not of a kind than by `isinstance`.
             t, name_a, name_b = reading.t, reading.a, reading.b
-            a = named.get(name_a) or self._name(name_a, t)
-            b = named.get(name_b) or self._name(name_b, t)
-            if isinstance(reading, Range) and is_impossible(state, reading, a.node, b.node, self._covariance):
+            a, row_a, decided_a, fixed_a = named.get(name_a) or self._name(name_a, t)
+            b, row_b, decided_b, fixed_b = named.get(name_b) or self._name(name_b, t)
+            if type(reading) is Range and is_impossible(state, reading, a, b, self._covariance):
                 state.count("not_fused")
                 continue
-            between, crossing = a.decided and b.decided, False
-            if not between and not self._sights(a.node, b.node, reading):
+            between, crossing = decided_a and decided_b, False
+            if not between and not self._sights(a, b, reading):
                 continue
-            if between and a.fixed and b.fixed:
+            if fixed_a and fixed_b and between:
                 state.count("not_fused")
                 continue
             numbers, constant = held if between else self._sighted, 0.0
-            if isinstance(reading, Rssi):
+            if type(reading) is Rssi:
                 kind, source, value, sigma = RSSI, UNTOLD_POWER, reading.dbm, physics.RSSI_SIGMA_DB
                 if reading.tx_dbm is not None:
                     source, constant = TOLD_POWER, reading.tx_dbm
-            elif isinstance(reading, Crossing):
+            elif type(reading) is Crossing:
                 kind, source, value, sigma, crossing = RSSI, REACH, 0.0, reach.NOMINAL_DB, True
-            elif isinstance(reading, Range):
+            elif type(reading) is Range:
                 kind, source, value = RANGE, reading.technology or "unnamed", reading.range_m
                 usual = physics.RANGE_SIGMA_M.get(source, physics.RANGE_SIGMA_OTHER_M)
                 sigma = max(reading.sigma_m or usual, physics.SIGMA_FLOOR_M)
                 if state.delayed:
                     source = source_of(source, name_a, name_b, state.delayed)
             else:
-                if self._bear(a, b, reading):
+                if type(reading) is Bearing and self._bear(a, row_a, row_b, reading):
                     fused += 1
                     fused_t[name_a] = fused_t[name_b] = t
                 continue
-            if kind == RANGE and source not in state.calibrations and "unit" in (a.node.mode, b.node.mode):
+            if kind == RANGE and source not in state.calibrations and "unit" in (a.mode, b.mode):
                 state.calibrations[source] = Calibration()
             technology = numbers.get(source)
             if technology is None:
@@ -119,10 +108,10 @@ class Pairs:
             )
             if link is None:
                 link = links.number(source, name_a, name_b)
-            if kind == RANGE and is_repeated(links, link, t, value, a.node, b.node):
+            if kind == RANGE and is_repeated(links, link, t, value, a, b):
                 state.count("not_fused")
                 continue
-            told += (t, value, sigma, constant, technology, link, a.number, b.number)
+            told += (t, value, sigma, constant, technology, link, row_a, row_b)
             if between and not crossing:
                 fused += 1
                 fused_t[name_a] = fused_t[name_b] = t
@@ -158,7 +147,7 @@ class Pairs:
     def _name(self, name: str, t: float) -> Named:
         node = self._state.node_of(name, "breadcrumb", t)
         end = end_of(self._state, node, self._marks)
-        found = self._named[name] = Named(node, len(self._ends), end.decided, node.mode == "fixed")
+        found = self._named[name] = node, len(self._ends), end.decided, node.mode == "fixed"
         self._ends.append(end)
         return found
 
@@ -200,11 +189,10 @@ class Pairs:
         self._technologies.append(known)
         return numbers[source]
 
-    def _bear(self, a: Named, b: Named, reading: Bearing) -> bool:
-        """Take a bearing between decided nodes in, unless nobody knows what it is counted from."""
+    def _bear(self, node: NodeState, row_a: int, row_b: int, reading: Bearing) -> bool:
+        """Take a bearing of a decided node in, unless nobody knows what it is counted from."""
         state, kind, heading = self._state, BEARING, 0.0
         if reading.frame == "body":
-            node = a.node
             known = node.unit_heading_rad if node.mode == "unit" else node.heading_rad
             silent = node.mode == "unit" and reading.t > (node.unit_t or node.pose_t) + SILENT_S
             if known is None or node.mode == "free" or silent:
@@ -220,5 +208,5 @@ class Pairs:
             known_of = Technology(kind, state.source(""), -1, 1.0, 0.0, *physics.BEARING_NOISE)
             self._technologies.append(known_of)
         told = (reading.t, reading.bearing_rad, sigma, heading)
-        self._told += (*told, technology, -1, a.number, b.number)
+        self._told += (*told, technology, -1, row_a, row_b)
         return True

@@ -16,7 +16,7 @@ COPY = 1e-6
 
 
 def _whose(reading: Displacement) -> tuple[float, str, bool]:
-    return reading.t, reading.node, isinstance(reading, InertialDisplacement)
+    return reading.t, reading.node, type(reading) is InertialDisplacement
 
 
 def joined(state: FusionState, readings: Sequence[Displacement]) -> list[Displacement]:
@@ -33,11 +33,11 @@ def joined(state: FusionState, readings: Sequence[Displacement]) -> list[Displac
     """
     if len(readings) < 2:
         return list(readings)
-    ordered = sorted(readings, key=_whose)
-    if len({_whose(reading) for reading in ordered}) == len(ordered):
-        return ordered
+    by_epoch = {_whose(reading): reading for reading in readings}
+    if len(by_epoch) == len(readings):
+        return [by_epoch[one] for one in sorted(by_epoch)]
     found = []
-    for _, same in groupby(ordered, key=_whose):
+    for _, same in groupby(sorted(readings, key=_whose), key=_whose):
         first, *others = same
         parts = [first]
         for other in others:

@@ -52,7 +52,7 @@ def with_starts(state: FusionState, readings: Sequence[Displacement]) -> list[Di
 
 def _begun(state: FusionState, reading: Displacement) -> Displacement | None:
     node = state.nodes.get(reading.node)
-    if reading.from_t is not None or isinstance(reading, InertialDisplacement):
+    if reading.from_t is not None or type(reading) is InertialDisplacement:
         return reading
     if node is None or node.mode == "retired":
         return reading
@@ -90,19 +90,23 @@ def is_copy(cadence: Cadence, told: Reported) -> bool:
         cadence: what its unit has reported, at least one.
         told: the report.
     """
-    *older, last = cadence.recent
+    last = cadence.recent[-1]
     whole_of_it = told.heading_rad is not None and math.hypot(*told.delta_m) > COPY
     # Who walks evenly reports the same again, but at his unit's own time.
-    waited_s, usual_s, period_s = told.t - last.t, cadence.usual_s, cadence.period_s
+    waited_s = told.t - last.t
     if says_the_same(last, told):
+        usual_s = cadence.usual_s
         if usual_s is not None and waited_s < SOON * usual_s:
             own = len(cadence.spans_s) < SPANS_LEAST or is_timely(waited_s, cadence.middle_s)
             return not (own and left_some_out(usual_s / waited_s))
+        period_s = cadence.period_s
         return whole_of_it and period_s is not None and not is_whole(waited_s / period_s)
     # One that is older than another has to be the same in every number, of which a heading is one. Units
     # round them: what comes at its unit's own time is told by it, though it has told the same before.
-    timely = is_timely(waited_s, period_s or usual_s)
-    return whole_of_it and not timely and any(says_the_same(one, told) for one in older)
+    # Hardly any says the same: what its unit's time is need not be asked.
+    if not whole_of_it or not any(says_the_same(one, told) for one in cadence.recent[:-1]):
+        return False
+    return not is_timely(waited_s, cadence.period_s or cadence.usual_s)
 
 
 def is_timely(waited_s: float, between_s: float | None) -> bool:
