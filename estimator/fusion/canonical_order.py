@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable
-from itertools import groupby
 from operator import attrgetter
 
 import msgspec
@@ -19,14 +18,17 @@ UNTIL_T = attrgetter("until_t")
 
 def in_order(readings: Iterable[AnyFolded]) -> list[AnyFolded]:
     """Readings in their order: by until when they tell, introductions first, then by their own bytes."""
+    together: dict[float, list[AnyFolded]] = {}
+    for reading in readings:
+        together.setdefault(reading.until_t, []).append(reading)
     ordered: list[AnyFolded] = []
-    for _, same in groupby(sorted(readings, key=UNTIL_T), key=UNTIL_T):
-        together = list(same)
-        if len(together) > 1:
-            together.sort(key=_encode)
-            if not INTRODUCTIONS.isdisjoint(map(type, together)):
-                together.sort(key=_rank)
-        ordered += together
+    for until_t in sorted(together):
+        same = together[until_t]
+        if len(same) > 1:
+            same.sort(key=_encode)
+            if not INTRODUCTIONS.isdisjoint(map(type, same)):
+                same.sort(key=_rank)
+        ordered += same
     return ordered
 
 

@@ -54,7 +54,7 @@ def in_pieces(readings: Iterable[AnyReading]) -> Iterator[AnyFolded]:
     A reading of seconds of samples would come after all that was heard meanwhile, which waits for it in vain.
     """
     for reading in readings:
-        if isinstance(reading, Imu):
+        if type(reading) is Imu:
             yield from pieces(reading)
         else:
             yield reading

@@ -9,7 +9,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
 from estimator.fusion.canonical_order import UNTIL_T, in_order
-from estimator.fusion.holding import names_of
+from estimator.fusion.holding import PAIRS, names_of
 from estimator.fusion.memory.state import FusionState
 from estimator.inertial.samples import AnyFolded, in_pieces
 from estimator.measurements import AnyReading
@@ -79,7 +79,7 @@ class Heard:
 
         Then all is to be heard anew, and nothing to be folded ahead.
         """
-        since_t, until_t = self._day()
+        since_t, until_t = self._day(sorted(self._waiting, key=UNTIL_T))
         wrong = bool(self._epochs) and not since_t < self._epochs[0] <= self._epochs[-1] < until_t
         return wrong or any(reading.until_t > since_t for reading in self._early)
 
@@ -88,21 +88,27 @@ class Heard:
 
         Both may be changed: this goes on without what is not folded yet. What is folded is not `misdated`.
         """
-        since_t, until_t = self._day()
         rest = in_order(self._waiting)
+        since_t, until_t = self._day(rest)
         rest = rest[bisect_right(rest, since_t, key=UNTIL_T) : bisect_left(rest, until_t, key=UNTIL_T)]
         lifetimes = dict(self._lifetimes)
         _extend(lifetimes, rest)
         return self._pass.ended(rest), lifetimes
 
-    def _day(self) -> tuple[float, float]:
-        """Epochs between which the incident lies (s): a day to both sides of its middle reading's."""
+    def _day(self, waiting: Sequence[AnyFolded]) -> tuple[float, float]:
+        """Epochs between which the incident lies (s): a day to both sides of its middle reading's.
+
+        Args:
+            waiting: what is not folded yet, by epoch.
+        """
         middle, middle_t = len(self) // 2, 0.0
-        early, waiting = (sorted(map(UNTIL_T, some)) for some in (self._early, self._waiting))
-        for ordered in (early, self._epochs, waiting):
-            if 0 <= middle < len(ordered):
-                middle_t = ordered[middle]
-            middle -= len(ordered)
+        early = sorted(self._early, key=UNTIL_T)
+        if middle < len(early):
+            middle_t = early[middle].until_t
+        elif middle < len(early) + len(self._epochs):
+            middle_t = self._epochs[middle - len(early)]
+        elif waiting:
+            middle_t = waiting[middle - len(early) - len(self._epochs)].until_t
         return middle_t - LONGEST_S, middle_t + LONGEST_S
 
 
@@ -113,9 +119,23 @@ def _begins(reading: AnyReading) -> float:
 
 def _extend(lifetimes: dict[str, tuple[float, float]], readings: Sequence[AnyFolded]) -> None:
     """Take note of who was heard in readings, which come in order of epoch."""
+    since, until = dict[str, float](), dict[str, float]()
     for reading in readings:
-        since_t, until_t = reading.t, reading.until_t
+        t = reading.t
+        if isinstance(reading, PAIRS):
+            # Nearly all are such: of one epoch, before which nothing of what comes later begins but samples.
+            a, b = reading.a, reading.b
+            until[a] = until[b] = t
+            if a not in since:
+                since[a] = t
+            if b not in since:
+                since[b] = t
+            continue
+        until_t = reading.until_t
         for name in names_of(reading):
-            known = lifetimes.get(name)
-            first_t = since_t if known is None or since_t < known[0] else known[0]
-            lifetimes[name] = first_t, until_t
+            until[name] = until_t
+            if name not in since or t < since[name]:
+                since[name] = t
+    for name, first_t in since.items():
+        known = lifetimes.get(name)
+        lifetimes[name] = first_t if known is None else min(first_t, known[0]), until[name]
