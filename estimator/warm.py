@@ -44,7 +44,7 @@ from estimator.inertial.zupt_aided import advance
 from estimator.measurements.bearing import predict_bearing, wrap
 from estimator.measurements.range import predict_range
 from estimator.measurements.rssi import predict_rssi
-from estimator.smoothing.changes.moved_nodes import test_place
+from estimator.smoothing.changes.moved_nodes import by_node, test_place
 from estimator.smoothing.changes.track_fit import RangedTrack, fit_track
 from estimator.smoothing.keyframes.displacement_sums import Way, ways_of
 from estimator.smoothing.keyframes.ends import Table, faced, place_ends
@@ -177,7 +177,8 @@ def _warm_chain() -> None:
     cross_information(np.zeros((1, 2)), n, n, columns, slab, np.zeros((1, ANY)), one, nowhere, nowhere)
     probe(np.zeros((n, PROBES)), n, n, columns, slab, np.zeros((1, ANY)), one)
     lag_one_correlation(slab, one)
-    test_place(slab, heard, 0, 0, one, one, 0.0)
+    _, of_node = by_node(slab, heard, 1)
+    test_place(of_node, heard, 0, 0, one, one, 0.0)
     fit_track(
         RangedTrack(place[:, :2].copy(), one, one, one, place),
         place[:, :2].copy(),

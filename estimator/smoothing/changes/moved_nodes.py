@@ -77,13 +77,20 @@ def moved_nodes(
     usual[recent] = costs_of(residual, sigma, rows.noise[recent], kinds[recent] == RANGE, rows.alike[recent])
     found: dict[str, tuple[Place, MovedNode]] = {}
     suspected, doubted = False, dict[str, Integers]()
+    first, told = by_node(recent, rows.pairs, len(state.owners))
     for node in filter(may_be_kicked, state.nodes.values()):
         for together in BY_KIND if solved.rests else (*ALL_KINDS, *BY_KIND):
             if measured.isdisjoint(together):
                 continue
             kind = -1 if together in ALL_KINDS else together[0]
             own, mine, suspicious, after, before = test_place(
-                recent, rows.pairs, node.index, kind, usual, cost, now - NEW_S
+                told[first[node.index] : first[node.index + 1]],
+                rows.pairs,
+                node.index,
+                kind,
+                usual,
+                cost,
+                now - NEW_S,
             )
             if len(mine) < READINGS_MIN:
                 continue
@@ -158,23 +165,49 @@ class PlaceTest(NamedTuple):
 
 
 @njit(cache=True)
+def by_node(recent: Integers, pairs: Array, count: int) -> tuple[Integers, Integers]:
+    """Readings node by node, those of each in their order: each is gone through for its two nodes only.
+
+    Args:
+        recent: the readings, r.
+        pairs: all of them, as rows of the ledger, m × 11.
+        count: how many nodes there are.
+
+    Returns:
+        Where those of each node begin, count + 1, and the readings, 2 r.
+    """
+    first, found = np.zeros(count + 1, dtype=np.int64), np.empty(2 * len(recent), dtype=np.int64)
+    for i in recent:
+        for end in (2, 3):
+            first[int(pairs[i, end]) + 1] += 1
+    first = first.cumsum()
+    free = first.copy()
+    for i in recent:
+        for end in (2, 3):
+            node = int(pairs[i, end])
+            found[free[node]] = i
+            free[node] += 1
+    return first, found
+
+
+@njit(cache=True)
 def test_place(
-    recent: Integers, pairs: Array, number: int, kind: int, usual: Array, cost: Array, new_t: float
+    told: Integers, pairs: Array, number: int, kind: int, usual: Array, cost: Array, new_t: float
 ) -> PlaceTest:
     """Ask the readings to one node whether they disagree with its place.
 
     Args:
-        recent: readings, in order of epoch.
+        told: readings, in order of epoch, those to it among them.
         pairs: all of them, as rows of the ledger, m × 10.
         number: of the node.
         kind: of those that are asked; −1: all are.
-        usual: what each of the recent ones costs, walls among them, in log likelihood, m.
+        usual: what each of those readings costs, walls among them, in log likelihood, m.
         cost: what each of them costs, m.
         new_t: epoch since which readings are new (s).
     """
-    own, mine, newest = np.empty_like(recent), np.empty_like(recent), np.empty_like(recent)
+    own, mine, newest = np.empty_like(told), np.empty_like(told), np.empty_like(told)
     all_of, some, new = 0, 0, 0
-    for i in recent:
+    for i in told:
         if pairs[i, 2] == number or pairs[i, 3] == number:
             own[all_of], all_of = i, all_of + 1
             if kind < 0 or pairs[i, 1] == kind:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from estimator.estimate import NodeEstimate, Notice
-from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.ledger import COLUMNS, RANGE
 from estimator.fusion.memory.state import FusionState
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
@@ -18,6 +18,7 @@ from estimator.measurements.position import Position
 from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
 from estimator.simulate import Scenario, scenario
+from estimator.smoothing.changes.moved_nodes import by_node
 from estimator.smoothing.changes.relocation import READINGS_MIN
 from estimator.trackers.base import TrackerSettings
 from estimator.trackers.kirchhoff import KirchhoffTracker
@@ -217,3 +218,15 @@ def test_where_nothing_is_kicked_nothing_is_said_to_have_moved() -> None:
 def test_walls_that_make_ranges_too_long_have_moved_no_breadcrumb(seed: int) -> None:
     notices, _ = followed(scenario("heavy-obstruction", seed), 300.0)
     assert not [n for n in notices if n.code == "node_moved"]
+
+
+def test_each_node_is_asked_by_the_readings_that_name_it_in_their_order() -> None:
+    rng = np.random.default_rng(12)
+    pairs = np.zeros((200, len(COLUMNS["pairs"])))
+    pairs[:, 2] = rng.integers(0, 9, 200)
+    pairs[:, 3] = (pairs[:, 2] + rng.integers(1, 9, 200)) % 9
+    recent = rng.permutation(200)[:120]
+    first, told = by_node(recent, pairs, 11)
+    for node in range(11):
+        naming = [i for i in recent.tolist() if node in pairs[i, 2:4]]
+        assert told[first[node] : first[node + 1]].tolist() == naming
