@@ -169,7 +169,7 @@ class Lag:
                     self.late[node] = self.late.get(node, 0) + 1
                     missed[node] = reading
                 continue
-            tick, now = tick_of(until_t), tick_of(self._go_on(reading, known_t))
+            tick, now = tick_of(until_t), tick_of(self._go_on(reading, until_t, known_t))
             if room != (tick, now):
                 room = tick, now
                 self._make_room(tick, now)
@@ -186,17 +186,19 @@ class Lag:
         self._make_room(tick, tick_of(now_t))
         self._readings[tick].append(late)
 
-    def _go_on(self, reading: AnyFolded, known_t: float) -> float:
+    def _go_on(self, reading: AnyFolded, until_t: float, known_t: float) -> float:
         """Let the newest epoch be no older than that of a reading (s), note where it leaps, and return it.
 
         Where it is no later than a clock that can be trusted, nobody is to blame for a leap: time has passed.
         """
-        before_t, t = self.newest_t, min(reading.until_t, known_t)
+        before_t, t = self.newest_t, min(until_t, known_t)
+        if before_t is not None and t <= before_t:
+            return before_t
         if math.isinf(known_t) and (before_t is None or t > before_t + self.lag_s):
             self.leaps.append(Leap(names_of(reading)[0], before_t, t))
             del self.leaps[:-LEAPS_KEPT]
-        self.newest_t = t if before_t is None else max(before_t, t)
-        return self.newest_t
+        self.newest_t = t
+        return t
 
     def _why_late(self, t: float) -> str:
         """Whose reading made an epoch (s) too late, where one alone did."""

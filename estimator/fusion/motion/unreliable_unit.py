@@ -55,7 +55,7 @@ def ask(state: FusionState, table: Array) -> QuestionedUnits:
     if not nodes or not len(table):
         return NOBODY
     powers = _asked_by_powers(state, nodes)
-    if not any(powers) and not (table[:, KIND] == RANGE).any():
+    if not any(powers) and RANGE not in table[:, KIND].tolist():
         return NOBODY
     starts, asked_t, rows, some = state.graph.starts, list[float](), list[tuple[float, float, bool]](), False
     for node, by_powers in zip(nodes, powers, strict=True):

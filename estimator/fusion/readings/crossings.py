@@ -76,7 +76,7 @@ def learn_reach(state: FusionState, table: Array, told: Array) -> None:
         told: what has come of them, m × 3, see `gauss_newton.RESIDUAL`.
     """
     start = state.graph.starts.get(path_loss_variable(REACH))
-    if start is None or start not in table[:, EXTRA]:
+    if start is None or start not in table[:, EXTRA].tolist():
         return
     crossed = crossings_in(table, told, state.links.table, start).tolist()
     if not crossed:

@@ -30,7 +30,8 @@ from estimator.measurements.node import MOVING_ROLES
 from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
 
-NO_ROWS = np.empty((0, FIELDS))
+NO_ROWS: Array = np.empty((0, FIELDS))
+NO_EPOCHS: Array = np.zeros(0)
 AnyPair = Range | Rssi | Bearing | Crossing
 
 
@@ -60,7 +61,7 @@ class Pairs:
         self._sighted: dict[str, int] = {}
         self._known: Array | None = None
         self.fused_t: dict[str, float] = {}
-        self.epochs: Array = np.zeros(0)
+        self.epochs = NO_EPOCHS
 
     def take(self, readings: Sequence[AnyPair]) -> None:
         """Take readings in, in order of epoch."""
