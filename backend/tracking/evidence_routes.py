@@ -9,14 +9,16 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from backend.errors import Conflict
-from backend.live.past import row_at, told_at
+from backend.live.past import record_of, row_at, told_at
 from backend.log.base import LogReader
+from backend.log.incident import Incident
 from backend.log.incidents import IncidentStore
 from backend.tracking.asked import while_asked
 from backend.tracking.heads import head_of
 from backend.tracking.routes import NodeName, answers_with, as_json, moment
 from backend.tracking.smoothing import Smoothing
 from estimator.evidence import Advice, Evidence
+from estimator.measurements.base import LATEST_T
 
 
 def evidence_router(incidents: IncidentStore, reader: LogReader, smoothing: Smoothing) -> APIRouter:
@@ -48,8 +50,7 @@ def evidence_router(incidents: IncidentStore, reader: LogReader, smoothing: Smoo
             known = told_at(known, t, await asyncio.to_thread(row_at, reader, known, t))
         found = await while_asked(request, smoothing.evidence(head_of(known), node, t))
         if found is None:
-            when = "yet" if t is None else "at that time"
-            raise Conflict(f"The position of {node!r} is not decided {when}, or nobody doubts it.")
+            raise await _no_fix(known, node, t)
         return as_json(found)
 
     @router.get("/advice", operation_id="get_advice", responses=answers_with("Advice", 409, 504))
@@ -58,8 +59,21 @@ def evidence_router(incidents: IncidentStore, reader: LogReader, smoothing: Smoo
         known = await asyncio.to_thread(incidents.get, incident)
         found = await while_asked(request, smoothing.advice(head_of(known), node))
         if found is None:
-            raise Conflict(f"The position of {node!r} is not decided yet, or nobody doubts it.")
+            raise await _no_fix(known, node, None)
         return as_json(found)
+
+    async def _no_fix(known: Incident, node: str, t: float | None) -> Conflict:
+        """Why nothing holds a node anywhere, and what to do about it."""
+        row = await asyncio.to_thread(row_at, reader, known, LATEST_T if t is None else t)
+        told = next((one for one in record_of(row).nodes if one.node == node), None)
+        if told is not None and told.role == "base" and told.position_m is not None:
+            return Conflict(
+                f"{node!r} is a base: it is where it was said to be, and nothing measured holds it."
+            )
+        when = "yet" if t is None else "at that time"
+        return Conflict(
+            f"The position of {node!r} is not decided {when}: it takes readings to others whose are."
+        )
 
     return router
 

@@ -48,7 +48,7 @@ class BatchSmoother:
             KeyError: there is no such node.
         """
         state, _ = self._heard(told).ended()
-        if state.nodes[node].mode == "fixed" or not len(state.ledger.table("begins")):
+        if state.nodes[node].mode == "fixed":
             return None
         problem, solved, modes = _likeliest(state)
         return explain(problem.layout.state, problem, solved, modes, node)

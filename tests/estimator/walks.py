@@ -86,3 +86,24 @@ def behind_a_wall() -> list[AnyReading]:
         else r
         for r in walk
     ]
+
+
+def standing_radios(seconds: int = 20, seed: int = 1) -> list[AnyReading]:
+    """Readings in order of epoch of a base, three anchors and a beacon that these range: nobody moves."""
+    rng = np.random.default_rng(seed)
+    places = [(0.0, 8.0, 0.0), (10.0, 0.0, 0.0), (10.0, 8.0, 0.0)]
+    readings: list[AnyReading] = [
+        Node(t=0.0, node="base", role="base"),
+        Node(t=0.0, node="beacon", role="beacon"),
+    ]
+    readings += [
+        Node(t=0.0, node=f"anchor{i}", role="anchor", position_m=place, sigma_m=0.3)
+        for i, place in enumerate(places)
+    ]
+    for second in range(1, seconds + 1):
+        for i, place in enumerate(places):
+            measured = math.dist(place, (5.0, 4.0, 0.0)) + float(rng.normal(0.0, 0.1))
+            readings.append(
+                Range(t=float(second), a=f"anchor{i}", b="beacon", range_m=measured, technology="uwb")
+            )
+    return readings

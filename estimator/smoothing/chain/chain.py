@@ -19,6 +19,7 @@ from estimator.graph.dense import Array, factorise, inverse, log_determinant, me
 from estimator.graph.parallel import in_parallel
 from estimator.smoothing.chain.groups import Group
 from estimator.smoothing.chain.strand import Strand, strands_of
+from estimator.smoothing.keyframes.walks import STATES
 
 NOTHING = factorise(np.zeros((0, 0)))
 LARGE = 500_000
@@ -241,14 +242,13 @@ class Chain:
         """After `reduce` or `solve`: covariances of the walks and of the border.
 
         Returns:
-            Of each walk at each keyframe, k × walks × b × b; of each with itself at the next keyframe,
-            (k − 1) × walks × b × b; of the border, s × s.
+            Of each walk at each keyframe, k × walks × 6 × 6; of each with itself at the next keyframe,
+            (k − 1) × walks × 6 × 6; of the border, s × s.
         """
         border = self.border_covariance()
         walks = sum(len(strand.group.walks) for strand in self.strands)
-        size = self.width // max(walks, 1)
-        found = np.zeros((self._length, walks, size, size))
-        ahead = np.zeros((max(self._length - 1, 0), walks, size, size))
+        found = np.zeros((self._length, walks, STATES, STATES))
+        ahead = np.zeros((max(self._length - 1, 0), walks, STATES, STATES))
         groups = [strand.group for strand in self.strands]
         corners = [border[group.lasting[:, None], group.lasting] for group in groups]
         own = self.each(Strand.covariances, corners)

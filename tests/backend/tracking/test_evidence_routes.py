@@ -103,6 +103,25 @@ def test_a_node_without_a_position_is_told_as_such(post: Post, walked: str, what
     assert "not decided" in msgspec.json.decode(body)["detail"]
 
 
+@pytest.mark.parametrize("what", ["evidence", "advice"])
+def test_of_the_base_it_is_said_that_nothing_measured_holds_it(post: Post, walked: str, what: str) -> None:
+    status, body = get(post, walked, what, node="base")
+    assert status == 409
+    detail = msgspec.json.decode(body)["detail"]
+    assert "'base' is a base" in detail
+    assert "not decided" not in detail
+
+
+def test_an_anchor_is_held_by_what_was_told_of_it_though_nobody_moves(post: Post) -> None:
+    incident = post.open_incident("still")
+    anchor = {"kind": "node", "node": "a1", "role": "anchor", "position_m": [5, 5, 0], "sigma_m": 0.3}
+    ack = post.telemetry(incident, "b1", [anchor | {"t": START_T}])
+    post.frame(incident, min_seq=int(str(ack["seq"])))
+    found = evidence(post, incident, node="a1")
+    assert [(one.kind, one.a) for one in found.held] == [("prior", "a1")]
+    assert found.position_m == pytest.approx((5.0, 5.0, 0.0))
+
+
 @pytest.mark.parametrize(
     ("what", "parameters"),
     [

@@ -20,7 +20,7 @@ from estimator.simulate import paper_a, scenario
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.arbitrary import readings
-from tests.estimator.walks import two_responders
+from tests.estimator.walks import standing_radios, two_responders
 
 
 @settings(max_examples=120, deadline=None)
@@ -44,6 +44,15 @@ def test_a_track_has_a_point_at_each_whole_second_from_first_to_last_reading() -
     assert [p.t for p in tracks["ff1"]] == [float(t) for t in range(41)]
     assert [p.t for p in tracks["base"]] == [float(t) for t in range(41)]
     assert tracks["b10"][0].t == 11.0
+
+
+def test_where_nobody_moves_what_stands_has_tracks_as_well() -> None:
+    tracks = BatchSmoother().smooth(standing_radios())
+    assert set(tracks) == {"base", "beacon", "anchor0", "anchor1", "anchor2"}
+    beacon = tracks["beacon"][-1]
+    off_m = np.subtract(beacon.position_m, (5.0, 4.0, 0.0))[:2]
+    known = full_covariance(np.array([beacon.covariance_m2]))[0][:2, :2]
+    assert off_m @ np.linalg.solve(known, off_m) < 13.8
 
 
 def test_a_linear_walk_between_two_fixes_is_the_least_squares_line() -> None:

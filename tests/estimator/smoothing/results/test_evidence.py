@@ -11,7 +11,7 @@ from estimator.measurements.position import Position
 from estimator.measurements.range import Range
 from estimator.measurements.retire import Retire
 from estimator.trackers.base import TrackerSettings
-from tests.estimator.walks import behind_a_wall, two_responders
+from tests.estimator.walks import behind_a_wall, standing_radios, two_responders
 
 SMOOTHER = trackers.smoother("kirchhoff", TrackerSettings())
 
@@ -44,6 +44,17 @@ def test_an_anchor_is_held_by_what_was_told_of_it() -> None:
     assert (found.held[0].kind, found.held[0].a) == ("prior", "anchor")
     assert found.held[0].sigma == pytest.approx(0.05)
     assert found.held[0].share > 0.5
+
+
+def test_where_nobody_moves_an_anchor_and_what_is_ranged_from_it_are_held_as_well() -> None:
+    found = SMOOTHER.evidence(standing_radios(), "anchor0")
+    assert found is not None
+    assert (found.held[0].kind, found.held[0].a) == ("prior", "anchor0")
+    assert found.held[0].share > 0.5
+    ranged = SMOOTHER.evidence(standing_radios(), "beacon")
+    assert ranged is not None
+    assert {m.a for m in ranged.held if m.kind == "prior"} >= {"anchor0", "anchor1", "anchor2"}
+    assert sum(m.share for m in ranged.held) + ranged.rest == pytest.approx(1.0, abs=1e-9)
 
 
 def test_a_sharp_fix_now_holds_the_position_alone() -> None:
