@@ -148,6 +148,17 @@ class LayoutSeen:
         )
         return found + ([f"the page is {wide} px too wide"] if wide > 0 else [])
 
+    @property
+    def slides_sideways(self) -> list[str]:
+        """What holds more than it is wide, and would be pushed to and fro."""
+        found: list[str] = self.page.evaluate(
+            """() => [...document.querySelectorAll('#app *')].filter((part) => !part.closest('.unseen')
+              && ['auto', 'scroll'].includes(getComputedStyle(part).overflowX)
+              && part.scrollWidth > part.clientWidth + 1)
+              .map((part) => `${part.tagName} ${part.className}`)"""
+        )
+        return found
+
     def scrolls_to_the_end(self) -> bool:
         """Turn the wheel over the top bar as far as it goes; whether the whole timeline is seen then."""
         self.page.mouse.move(5, 5)

@@ -49,6 +49,20 @@ def test_low_air_is_told_on_top_within_a_second_and_the_way_leads_to_its_bearer(
     assert "Turn back at 180 bar" in " ".join(commander.card.split())
 
 
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768), (768, 1024)])
+def test_pressure_that_was_told_long_ago_fits_its_line_with_its_age_and_that_it_is_time_to_turn_back(
+    server: Server, post: Post, commander: Commander, width: int, height: int
+) -> None:
+    incident = two_inside(post, T0, "recorded")
+    heard(post, incident, air(T0 + 1, "ff1", 178), step(T0 + 754, "ff1", [1, 0, 0]))
+    commander.sits_at(width, height)
+    commander.opens(server.url, incident)
+    eventually(lambda: commander.board()["FF1"].air == "was 178 bar, 12 min ago, turn back")
+    commander.selects("ff1")
+    assert (commander.cut_off(), commander.off_the_screen) == ([], [])
+    assert commander.slides_sideways == []
+
+
 def test_low_air_that_was_seen_is_quiet_until_it_is_somebody_elses_and_another_cylinder_ends_it(
     server: Server, post: Post, commander: Commander
 ) -> None:
