@@ -70,6 +70,26 @@ class DeviceUsed(FingersUsed):
         """Have the system take it away."""
         self.page.evaluate("window.theSound.suspend()")
 
+    def may_go_dark(self) -> None:
+        """From the next page on it is seen whether the screen is kept lit, and the system can darken it."""
+        self.page.add_init_script(
+            """Object.defineProperty(navigator, 'wakeLock', {value: {request: async () => {
+              const light = {released: false, release: async () => { light.released = true; }};
+              window.theLight = light;
+              return light;
+            }}});"""
+        )
+
+    def goes_dark(self) -> None:
+        """Have the system let the screen go dark, and the commander wake it by a touch on the clock."""
+        self.page.evaluate("window.theLight.release()")
+        self.page.get_by_test_id("clock").click()
+
+    @property
+    def is_kept_lit(self) -> bool:
+        """Whether the screen is kept lit."""
+        return bool(self.page.evaluate("window.theLight !== undefined && !window.theLight.released"))
+
     def reads_with_larger_text(self, times: float) -> None:
         """Have the browser's own size of text set to so many times the usual one, as who sees badly does."""
         devtools = self.page.context.new_cdp_session(self.page)
