@@ -171,6 +171,8 @@ def test_who_asks_why_somebody_is_here_keeps_the_alarms_in_view(
     commander.selects("ff1")
     commander.asks_why_here()
     assert commander.slid_px == 0
+    assert commander.answer_fills_the_card
+    assert commander.slides_sideways == []
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768)])

@@ -68,6 +68,17 @@ class WhyAsked:
         assert board is not None
         return board["y"] <= said["y"] and said["y"] + said["height"] <= board["y"] + board["height"] + 1
 
+    @property
+    def answer_fills_the_card(self) -> bool:
+        """Whether what holds the fix is as wide as the question and the card's way out together."""
+        held, way_out = (
+            self.page.get_by_test_id("held").bounding_box(),
+            self.page.get_by_role("button", name="Close details").bounding_box(),
+        )
+        assert held is not None
+        assert way_out is not None
+        return abs(held["x"] + held["width"] - way_out["x"] - way_out["width"]) < 2
+
     def is_told_what_holds(self) -> bool:
         """Whether the evidence is there."""
         return self.page.get_by_test_id("held").is_visible()
