@@ -108,8 +108,10 @@ def _left(covariance: Array, edge: Array, rows: slice, variance_m2: float) -> fl
 
 
 def _uav_places(state: FusionState) -> Array:
-    """Places round all that is known, as far outside as a UAV keeps from a wall, m × 3 (m)."""
+    """Places round all that is known but UAVs, as far outside as these keep from a wall, m × 3 (m)."""
     known = np.array([state.place(n) for n in state.nodes.values() if n.decided and n.role != "uav"])
+    if not len(known):
+        return known.reshape(0, 3)
     middle = known.mean(axis=0)
     radius = float(np.linalg.norm(known[:, :2] - middle[:2], axis=1).max()) + UAV_AWAY_M
     angles = np.arange(UAV_PLACES) * (2.0 * np.pi / UAV_PLACES)

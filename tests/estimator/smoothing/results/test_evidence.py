@@ -115,6 +115,14 @@ def test_advice_names_the_best_first_and_never_makes_worse() -> None:
     assert all(s.sigma_m <= found.sigma_m for s in found.suggestions)
 
 
+def test_while_nothing_but_a_uav_is_known_nothing_can_be_done_for_it() -> None:
+    flying = [Position(t=float(t), node="uav", position_m=(1.0 * t, 0.0, 20.0)) for t in range(3)]
+    found = SMOOTHER.advice([Node(t=0.0, node="uav", role="uav"), *flying], "uav")
+    assert found is not None
+    assert found.sigma_m > 0.0
+    assert found.suggestions == []
+
+
 def test_who_is_known_exactly_needs_neither() -> None:
     assert SMOOTHER.evidence(walk(), "base") is None
     assert SMOOTHER.advice(walk(), "base") is None
