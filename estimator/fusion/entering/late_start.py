@@ -2,8 +2,8 @@
 
 Who comes first, and of whom nobody said where he entered, is taken to be at the base: most systems are
 switched on at the door. That is an assumption with a probability. Radios of known places may say that he is
-elsewhere; and breadcrumbs that nobody has dropped lie where somebody was who is not in the log (decision
-0110).
+elsewhere, and the more so where breadcrumbs that nobody has dropped lie about: somebody has been there who is
+not in the log (decision 0110).
 """
 
 import math
@@ -33,8 +33,6 @@ of ten."""
 UNDROPPED = (0.0, 1.5, 3.0)
 """What none, one, and more breadcrumbs that nobody has dropped speak for that (log likelihood): one may be
 the radio of somebody who has not reported yet. More than two share their reason."""
-UNHEARD_BASE = 1.0
-"""What it speaks for that if the base is not heard: it may have no radio."""
 ASKED_S = 60.0
 """For so long after the first one's beginning it is asked: later his beginning is part of what is known."""
 HANDED_M = 3.0, 1.5
@@ -53,11 +51,12 @@ def ask(state: FusionState) -> None:
     if not crew:
         return
     told = [odds for odds in (_odds_elsewhere(state, node) for node in crew) if odds is not None]
+    if not told:
+        # Nobody could be found again, and the map is right but for where it lies.
+        return
     waited = state.newest_t - state.entered_t >= physics.MOVING_SIGHTINGS_S
     undropped = len(_undropped(state, state.entered_t)) if waited else 0
-    odds = BEFOREHAND + UNDROPPED[min(undropped, len(UNDROPPED) - 1)]
-    odds += max(told) if told else UNHEARD_BASE
-    if odds > 0.0:
+    if BEFOREHAND + UNDROPPED[min(undropped, len(UNDROPPED) - 1)] + max(told) > 0.0:
         _begin_again(state, crew)
 
 
