@@ -7,6 +7,7 @@ no reading inside the window stays linearised at an estimate that has turned out
 """
 
 from estimator.fusion.memory.state import FusionState
+from estimator.smoothing.images.flip_ambiguity import LIVE, Effort
 from estimator.smoothing.window_extent import SHORTEST_S, WORK, spacing_s, work
 from estimator.smoothing.window_solution import refresh
 
@@ -30,13 +31,14 @@ TOLD_S, MORE = 8.0, 0.5
 """What is new where headings are asked about rarely: so much at least, and this share of what is known."""
 
 
-def solve_if_due(state: FusionState, t: float, rarer: float = 1.0) -> None:
+def solve_if_due(state: FusionState, t: float, rarer: float = 1.0, effort: Effort = LIVE) -> None:
     """Solve the window again after a tick if it is due: by time, by how far it has bent, or by suspicion.
 
     Args:
         state: the fusion, changed in place.
         t: end of the tick (s).
         rarer: how many of its usual periods the window waits where nothing but time has gone by.
+        effort: how much is asked of images.
     """
     if state.begun_t is None:
         if not len(state.ledger.table("begins")) and not len(state.ledger.table("stands")):
@@ -63,23 +65,24 @@ def solve_if_due(state: FusionState, t: float, rarer: float = 1.0) -> None:
         # Most ticks come too soon for any window: how much work this one is need not be asked.
         if waited_s < periods * usual_s(state) or waited_s / period_s(state) < periods:
             return
-    solve_now(state, t)
+    solve_now(state, t, effort)
 
 
-def solve_now(state: FusionState, t: float) -> None:
+def solve_now(state: FusionState, t: float, effort: Effort = LIVE) -> None:
     """Solve the window again after a tick, due or not; nothing where nobody has begun yet.
 
     Args:
         state: the fusion, changed in place.
         t: end of the tick (s).
+        effort: how much is asked of images.
     """
     if state.begun_t is None:
         return
     solved_t = state.refreshed_t
     state.due, state.refreshed_t, state.bent_m = False, t, 0.0
-    if refresh(state, solved_t) and state.due:
+    if refresh(state, solved_t, effort=effort) and state.due:
         state.due = False
-        refresh(state, t, bent=True)
+        refresh(state, t, bent=True, effort=effort)
         # What was bent is rarely straight after one solution.
         state.suspected = True
 

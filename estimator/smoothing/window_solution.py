@@ -14,6 +14,7 @@ from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
 from estimator.smoothing.images.alternatives import Mode, alternatives_now
+from estimator.smoothing.images.flip_ambiguity import LIVE, Effort
 from estimator.smoothing.images.likeliest_image import JudgedImages, likeliest_image
 from estimator.smoothing.images.solutions import SLACKS_M
 from estimator.smoothing.keyframes.layout import Layout
@@ -36,13 +37,14 @@ RESTING = 0.1
 """A window that gains less in log likelihood is solved again soon anyway."""
 
 
-def refresh(state: FusionState, solved_t: float, bent: bool = False) -> bool:
+def refresh(state: FusionState, solved_t: float, bent: bool = False, effort: Effort = LIVE) -> bool:
     """Solve the window again, and go on from its solution.
 
     Args:
         state: the fusion, changed in place.
         solved_t: when it was last solved (s).
         bent: something has just been told that may have bent it all.
+        effort: how much is asked of images.
 
     Returns:
         False where it has none: the filter goes on as it was.
@@ -52,7 +54,7 @@ def refresh(state: FusionState, solved_t: float, bent: bool = False) -> bool:
         restart(state)
         return False
     try:
-        judged, mountings = _likeliest(state, since, solved_t, bent)
+        judged, mountings = _likeliest(state, since, solved_t, bent, effort)
         state.exposed = judged.exposed
         trimmed = trim(judged.problem, judged.solved)
         _hand_back(state, judged, mountings)
@@ -77,7 +79,7 @@ def _since(state: FusionState) -> float:
 
 
 def _likeliest(
-    state: FusionState, since: float, solved_t: float, bent: bool
+    state: FusionState, since: float, solved_t: float, bent: bool, effort: Effort
 ) -> tuple[JudgedImages, list[Mode]]:
     """The likeliest solution, with climbs, turned frames, mountings and images tried; others by mountings."""
     build = partial(_problem, since=since)
@@ -87,7 +89,7 @@ def _likeliest(
         problem, solved = find_unseen_climb(problem, solved, build, RESTING)
     problem, solved = turned_frames(problem, solved, build, RESTING)
     problem, solved, mountings = likeliest_mounting(problem, solved, build, RESTING, solved_t)
-    return likeliest_image(problem, solved), mountings
+    return likeliest_image(problem, solved, effort), mountings
 
 
 def _problem(state: FusionState, since: float) -> Problem:

@@ -10,6 +10,7 @@ from estimator.fusion.canonical_order import end_of_tick, in_order
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.tick import fold_tick
 from estimator.inertial.samples import AnyFolded
+from estimator.smoothing.images.flip_ambiguity import HURRIED, LIVE, Effort
 from estimator.smoothing.window import JOLT_M, solve_if_due, solve_now
 
 AGES_S, SPACINGS_S = (4.0, 16.0), (0.0, 4.0, 16.0)
@@ -27,13 +28,15 @@ class Chain:
 
     Args:
         checkpoints: ticks with the states after them, at least one, in order.
+        effort: how much its windows ask of images.
 
     Attributes:
         checkpoints: those that are kept.
     """
 
-    def __init__(self, checkpoints: Sequence[Checkpoint]) -> None:
+    def __init__(self, checkpoints: Sequence[Checkpoint], effort: Effort = LIVE) -> None:
         self.checkpoints = list(checkpoints)
+        self._effort = effort
 
     @property
     def folded(self) -> int:
@@ -71,7 +74,7 @@ class Chain:
             after = self.state.copy()
             fold_tick(after, end_of_tick(tick), in_order(readings[tick]))
             after.bent_m = max(after.bent_m, found_m(self.state, after))
-            solve_if_due(after, end_of_tick(tick))
+            solve_if_due(after, end_of_tick(tick), effort=self._effort)
             notices[tick] = list(after.notices)
             self.checkpoints.append((tick, after))
             if len(self.checkpoints) > MOST:
@@ -145,6 +148,6 @@ def hurried(
     for tick in ticks:
         fold_tick(state, end_of_tick(tick), in_order(readings[tick]))
         notices[tick] = list(state.notices)
-    solve_now(state, end_of_tick(ticks[-1]))
+    solve_now(state, end_of_tick(ticks[-1]), HURRIED)
     notices[ticks[-1]] = list(state.notices)
-    return Chain([(ticks[-1], state)])
+    return Chain([(ticks[-1], state)], HURRIED)

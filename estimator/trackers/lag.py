@@ -26,6 +26,7 @@ from estimator.fusion.memory.state import FusionState
 from estimator.inertial.samples import AnyFolded, Samples, in_pieces
 from estimator.measurements import AnyReading
 from estimator.measurements.node import LateNode, Node
+from estimator.smoothing.images.flip_ambiguity import HURRIED
 from estimator.trackers.catch_up import CatchUp
 from estimator.trackers.chain import Chain, hurried
 
@@ -118,7 +119,7 @@ class Lag:
         lag._sure = Chain(list(zip(record.checkpoints, states[:first], strict=True)))
         lag._hurry = record.hurry
         if record.shown:
-            lag._shown = Chain(list(zip(record.shown, states[first:], strict=True)))
+            lag._shown = Chain(list(zip(record.shown, states[first:], strict=True)), HURRIED)
         lag._notices, lag._given, lag._loose = record.notices, record.given, record.loose
         return lag
 

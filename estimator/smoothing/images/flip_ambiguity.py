@@ -46,6 +46,8 @@ class Effort(NamedTuple):
 
 
 LIVE = Effort(whole=False, nearest=2, newest=2, flips=24, tried=6, rounds=2)
+HURRIED = LIVE._replace(tried=2, rounds=1)
+"""Where the same is soon asked again in full: the two likeliest with all others held, once."""
 WHOLE = Effort(whole=True, nearest=6, newest=2, flips=48, tried=16, rounds=4)
 
 

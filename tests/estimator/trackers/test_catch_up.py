@@ -7,6 +7,7 @@ import pytest
 from estimator.estimate import NodeEstimate
 from estimator.fusion.memory.state import FusionState
 from estimator.measurements import AnyReading
+from estimator.smoothing.images.flip_ambiguity import HURRIED, LIVE, Effort
 from estimator.smoothing.window_solution import refresh
 from estimator.trackers.catch_up import (
     BACKLOG_TICKS,
@@ -41,9 +42,9 @@ def test_a_gateway_that_is_always_behind_has_the_window_solved_a_few_times_a_sec
 ) -> None:
     solved: list[float] = []
 
-    def counted(state: FusionState, solved_t: float, bent: bool = False) -> bool:
+    def counted(state: FusionState, solved_t: float, bent: bool = False, effort: Effort = LIVE) -> bool:
         solved.append(state.newest_t)
-        return refresh(state, solved_t, bent)
+        return refresh(state, solved_t, bent, effort)
 
     monkeypatch.setattr("estimator.smoothing.window.refresh", counted)
     tracker, before = KirchhoffTracker(), 0
@@ -55,6 +56,36 @@ def test_a_gateway_that_is_always_behind_has_the_window_solved_a_few_times_a_sec
         tracker.fold(batch)
         tracker.estimates()
     assert (len(solved) - before) / (LAST_S - BEHIND_S - 10) < 4.0
+
+
+def test_in_a_hurry_images_are_asked_about_less_and_of_the_sure_chain_as_ever(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[tuple[float, Effort]] = []
+
+    def noted(state: FusionState, solved_t: float, bent: bool = False, effort: Effort = LIVE) -> bool:
+        asked.append((state.newest_t, effort))
+        return refresh(state, solved_t, bent, effort)
+
+    monkeypatch.setattr("estimator.smoothing.window.refresh", noted)
+    tracker, in_a_hurry, on_time = KirchhoffTracker(), list[float](), list[float]()
+    for number, batch in enumerate(batches(60)):
+        tracker.fold(batch)
+        tracker.estimates()
+        newest_t = number // 2
+        if number == 2 * BEHIND_S - 1:
+            # Until now nothing has come late.
+            assert not in_a_hurry
+            assert on_time
+            on_time.clear()
+        in_a_hurry += [newest_t - t for t, effort in asked if effort == HURRIED]
+        on_time += [newest_t - t for t, effort in asked if effort == LIVE]
+        asked.clear()
+        if number == 2 * 60:
+            break
+    assert max(in_a_hurry) <= PROMPT_TICKS + 1.0 < max(on_time)
+    assert tracker.settled() is not None
+    assert {effort for _, effort in asked} == {LIVE}
 
 
 def test_what_is_told_hangs_neither_on_what_was_asked_nor_on_restarts() -> None:
