@@ -24,9 +24,6 @@ SUSPENSE = 0.25
 """Periods after which it is solved again where a breadcrumb may lie elsewhere."""
 EXPOSED = 0.5
 """The same where somebody may have gone to an image of where he seems to be."""
-LONGER = 0.15
-"""Of who may have faced anything each reading may tell while his way is short; later it is asked when he has
-been led for so much longer."""
 TOLD_S, MORE = 8.0, 0.5
 """What is new where headings are asked about rarely: so much at least, and this share of what is known."""
 
@@ -45,13 +42,10 @@ def solve_if_due(state: FusionState, t: float, rarer: float = 1.0, effort: Effor
             return
         state.begun_t = state.refreshed_t = t
     often = rarer == 1.0
-    told_s = t - state.refreshed_t
     # Whose heading is one of two is looked at as often as who may be at an image.
-    turned = any(
-        node.turned and not (node.otherwise and often) and told_s >= LONGER * (t - node.whole_t)
-        for node in state.nodes.values()
-    )
+    turned = any(node.turned and not (node.otherwise and often) for node in state.nodes.values())
     # Where the window is solved rarely, only when there is more to tell.
+    told_s = t - state.refreshed_t
     turned = turned and (often or told_s >= max(TOLD_S, MORE * (t - state.begun_t)))
     if not (state.due or turned or state.bent_m > JOLT_M * rarer):
         if state.suspected:

@@ -1,6 +1,5 @@
 """Readings to a node whose position is not decided yet, and where they were made from."""
 
-from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
@@ -51,22 +50,11 @@ def heard_between(state: FusionState, node: NodeState) -> tuple[float, float]:
     return float(pairs[own, 0].min(initial=np.inf)), float(pairs[own, 0].max(initial=-np.inf))
 
 
-def of_node(
-    state: FusionState, node: NodeState, since_t: float, by: Collection[int] | None = None
-) -> Sightings | None:
-    """The sightings of a node by the technology that saw it most, ranges first; None where there are none.
-
-    Args:
-        state: the fusion.
-        node: the node.
-        since_t: older ones do not count (s).
-        by: numbers of the nodes whose sightings count; None: all.
-    """
+def of_node(state: FusionState, node: NodeState, since_t: float) -> Sightings | None:
+    """The sightings of a node by the technology that saw it most, ranges first; None where there are none."""
     pairs = state.ledger.table("pairs")
     pairs = pairs[(pairs[:, 1] <= RSSI) & (pairs[:, 0] >= since_t)]
     mine = pairs[(pairs[:, 2] == node.index) | (pairs[:, 3] == node.index)]
-    if by is not None:
-        mine = mine[np.isin(mine[:, 2:4], list(by)).any(axis=1)]
     ranged = mine[:, 1] == RANGE
     if ranged.any():
         mine = mine[ranged]

@@ -242,13 +242,15 @@ class Chain:
         """After `reduce` or `solve`: covariances of the walks and of the border.
 
         Returns:
-            Of each walk at each keyframe, k × walks × 6 × 6; of each with itself at the next keyframe,
-            (k − 1) × walks × 6 × 6; of the border, s × s.
+            Of each walk at each keyframe, k × walks × b × b; of each with itself at the next keyframe,
+            (k − 1) × walks × b × b; of the border, s × s.
         """
         border = self.border_covariance()
         walks = sum(len(strand.group.walks) for strand in self.strands)
-        found = np.zeros((self._length, walks, STATES, STATES))
-        ahead = np.zeros((max(self._length - 1, 0), walks, STATES, STATES))
+        # Where nobody walks there are none, of the size that those who read them expect.
+        size = self.width // walks if walks else STATES
+        found = np.zeros((self._length, walks, size, size))
+        ahead = np.zeros((max(self._length - 1, 0), walks, size, size))
         groups = [strand.group for strand in self.strands]
         corners = [border[group.lasting[:, None], group.lasting] for group in groups]
         own = self.each(Strand.covariances, corners)
