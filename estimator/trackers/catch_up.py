@@ -12,9 +12,8 @@ PROMPT_TICKS = 4
 REFOLDED_PER_TICK = 4
 """Ticks that may be folded anew for each tick of incident time, in the long run: what leaves the bucket."""
 
-BACKLOG_TICKS = 20
-"""Ticks folded anew beyond that before there is a hurry, as when a gateway was out of reach for some seconds.
-A whole lag at once has stopped everybody's picture for a minute."""
+BACKLOG_TICKS = 60
+"""Ticks folded anew beyond that before there is a hurry: a whole lag, as when a gateway comes back."""
 
 FOLLOWED_PER_TICK = 2
 """Ticks by which the sure chain follows for each tick that incident time goes on."""
