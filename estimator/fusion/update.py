@@ -239,10 +239,7 @@ def tally(table: Array, found: Minimum, x: Array, links: Array, sums: Array) -> 
         error = residual / nominal
         if links[link, KEPT] > SAME_PLACE and not np.isnan(links[link, ERROR]):
             sums[source, 2] += good
-            # What a filter with the right noise leaves of one tick tells nothing of the next one. Of ranges
-            # less is believed to be shared: where no unit tells of motion, by what alike ones differ does.
-            apart = 0.0 if table[r, KIND] == RSSI else unsure
-            sums[source, 3] += good * (error * links[link, ERROR] - apart / nominal**2)
+            sums[source, 3] += good * (error * links[link, ERROR] - unsure / nominal**2)
         links[link, ERROR] = error if good > SAME_PLACE else np.nan
     return outliers
 

@@ -112,7 +112,7 @@ def pair_rows(
         if held[r]:
             kind = kind_of(technology)
             epochs[first[kind]] = pair[T]
-            fill(table[first[kind]], pair, technology, a, b, alike, newest, marks, x)
+            fill(table[first[kind]], pair, technology, a, b, alike, marks, x)
             if echo_m > 0.0:
                 row = table[first[kind]]
                 row[rows.OUTLIERS], row[rows.SHIFT], row[rows.SPREAD] = echoes.noise(echo_m, alike)
@@ -128,15 +128,7 @@ def kind_of(technology: Array) -> int:
 
 @njit(cache=True, error_model="numpy")
 def fill(
-    row: Array,
-    pair: Array,
-    technology: Array,
-    a: Array,
-    b: Array,
-    alike: float,
-    newest: Array,
-    marks: Array,
-    x: Array,
+    row: Array, pair: Array, technology: Array, a: Array, b: Array, alike: float, marks: Array, x: Array
 ) -> None:
     """Fill the row of a reading between two decided nodes, see `rows.Row`."""
     sigma, source, link, extra = pair[SIGMA], technology[SOURCE], pair[LINK], technology[START]
@@ -146,14 +138,9 @@ def fill(
         if technology[KIND] == BODY_BEARING:
             extra = a[recent_places.STATES]
     else:
-        known = technology[FACTOR], technology[SHARED], pair[SIGMA]
+        sigma = link_sigma(technology[FACTOR], technology[SHARED], pair[SIGMA], alike)
         through = abs(up_m(a, x) + at_a[2] - up_m(b, x) - at_b[2]) > physics.FLOOR_M
-        through = through and a[recent_places.OUTSIDE] == 0.0 and b[recent_places.OUTSIDE] == 0.0
-        if technology[KIND] == RSSI and link >= 0 and not through:
-            sigma = link_correlation.power_sigma(newest[int(link)], *known)
-        else:
-            sigma = link_sigma(*known, alike)
-        if through:
+        if through and a[recent_places.OUTSIDE] == 0.0 and b[recent_places.OUTSIDE] == 0.0:
             # It tells nothing of what its technology is like where no floor is between.
             sigma = through_sigma(sigma, technology[KIND] == RSSI, alike)
             source = link = -1.0

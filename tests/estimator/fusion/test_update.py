@@ -63,16 +63,6 @@ def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_
     assert np.isnan(links[1, ERROR])
 
 
-def test_powers_of_a_link_share_what_their_errors_say_and_ranges_less() -> None:
-    """Each is off by as much as the one before it on its link, and of no estimate is anybody sure."""
-    table, links, sums = np.zeros((2, FIELDS)), np.tile(NEW, (2, 1)), np.zeros((2, 6))
-    table[:, KIND], table[:, SOURCE], table[:, LINK] = [RSSI, RANGE], [0, 1], [0, 1]
-    table[:, EXTRA], table[:, NOMINAL], table[:, SIGMA] = -1, 2.0, 2.0
-    links[:, KEPT], links[:, ERROR] = 1.0, 0.5
-    tally(table, found(np.ones(2), np.full(2, 4.0), np.ones(2)), X, links, sums)
-    assert sums[:, 3] == pytest.approx([0.25, 0.25 - 0.5])
-
-
 def test_who_rest_side_by_side_tell_nothing_of_the_noise_of_radios_farther_apart() -> None:
     """Of two powers the first is that of a radio a metre away, the second that of one at ten metres."""
     table, links, sums = np.zeros((2, FIELDS)), np.tile(NEW, (2, 1)), np.zeros((1, 6))
