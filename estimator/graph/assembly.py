@@ -4,9 +4,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from estimator.graph.chain_kernels import Integers
+from estimator.graph.chain_kernels import NARROW, Integers
 from estimator.graph.dense import Array
-from estimator.graph.narrow_chain import NARROW
 
 
 @njit(cache=True)

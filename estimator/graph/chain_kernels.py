@@ -5,9 +5,11 @@ from numba import njit
 from numpy.typing import NDArray
 
 from estimator.graph.dense import Array
-from estimator.graph.narrow_chain import NARROW, eliminate_narrow, selected_inverse_narrow
 
 Integers = NDArray[np.int64]
+
+NARROW = 6
+"""Keyframes of one walk are eliminated faster by plain loops than by calls of BLAS."""
 
 
 @njit(cache=True)
@@ -91,6 +93,61 @@ def eliminate(first: int, last: int, diagonal: Array, link: Array, wide: Array) 
     return last
 
 
+@njit(cache=True)
+def eliminate_narrow(first: int, last: int, diagonal: Array, link: Array, wide: Array) -> int:
+    """`eliminate` for keyframes of one block of `NARROW` numbers."""
+    length, _, across = wide.shape
+    inverse, half = np.empty((NARROW, NARROW)), np.empty((NARROW, NARROW))
+    back, done = np.empty((NARROW, NARROW)), np.empty((NARROW, across))
+    for j in range(first, last):
+        for r in range(NARROW):
+            for c in range(NARROW):
+                inverse[r, c] = diagonal[j, r, c]
+        if not half_inverse(inverse):
+            return j
+        for r in range(NARROW):
+            for c in range(NARROW):
+                diagonal[j, r, c] = inverse[r, c]
+            for i in range(across):
+                done[r, i], wide[j, r, i] = wide[j, r, i], 0.0
+        for r in range(NARROW):
+            add_narrow(inverse, r, done, wide, j)
+        if j == length - 1:
+            break
+        for r in range(NARROW):
+            for i in range(across):
+                done[r, i] = wide[j, r, i]
+            for a in range(NARROW):
+                total = 0.0
+                for c in range(r + 1):
+                    total += inverse[r, c] * link[j, 0, a, c]
+                half[r, a], back[a, r] = total, -total
+        for a in range(NARROW):
+            add_narrow(back, a, half, diagonal, j + 1)
+            add_narrow(back, a, done, wide, j + 1)
+    return last
+
+
+@njit(cache=True, forceinline=True)
+def add_narrow(shares: Array, row: int, rows: Array, targets: Array, at: int) -> None:
+    """Add to a row of one of some matrices shares of `NARROW` rows.
+
+    All of them at once: each sum stays in a register, and the loop along the row is one of vectors.
+
+    Args:
+        shares: n × `NARROW`.
+        row: which of their rows counts, and which one of the matrix is changed.
+        rows: `NARROW` × m.
+        targets: k × n × m, changed.
+        at: which matrix.
+    """
+    a, b, c = shares[row, 0], shares[row, 1], shares[row, 2]
+    d, e, f = shares[row, 3], shares[row, 4], shares[row, 5]
+    for i in range(rows.shape[1]):
+        total = a * rows[0, i] + b * rows[1, i] + c * rows[2, i] + d * rows[3, i] + e * rows[4, i]
+        targets[at, row, i] += total + f * rows[5, i]
+
+
 @njit(cache=True, nogil=True)
 def take_off(first: int, last: int, wide: Array, corner: Array, gradient: Array) -> float:
     """Take off the border what it has lost by `eliminate`, Wᵀ W.
@@ -159,9 +216,6 @@ def selected_inverse(
     """
     length, width, across = wide.shape
     count, size, lasting = found.shape[1], found.shape[2], across - 1
-    if width == NARROW and count == 1 and lasting != 1:  # of one column BLAS sums in another order
-        selected_inverse_narrow(diagonal, link, wide, border_covariance, found, ahead)
-        return
     border, to_border = np.empty((width, lasting)), np.empty((width, lasting))
     with_border, next_border = np.empty((width, lasting)), np.zeros((width, lasting))
     on_border, turned = np.empty((width, lasting)), np.zeros((width, width))

@@ -21,7 +21,7 @@ from estimator.trackers.base import TrackerSettings
 from estimator.trackers.lag import Lag, LagRecord
 from estimator.trackers.snapshot import read_snapshot
 
-VERSION = 47
+VERSION = 45
 
 
 class _Snapshot(msgspec.Struct, frozen=True, array_like=True):

@@ -198,7 +198,7 @@ def test_place(
 
     Args:
         told: readings, in order of epoch, those to it among them.
-        pairs: all of them, as rows of the ledger, m × 10.
+        pairs: all of them, as rows of the ledger, m × 11.
         number: of the node.
         kind: of those that are asked; −1: all are.
         usual: what each of those readings costs, walls among them, in log likelihood, m.
