@@ -1,10 +1,14 @@
 """When late readings go on coming: which ticks are folded as they should be, and which in a hurry.
 
 To fold anew all that came after a late reading is worth its while now and then. A gateway that is always
-50 s behind asks for it each second, and nobody's picture would keep up (decision 0052).
+50 s behind asks for it each second, and nobody's picture would keep up (decision 0052). Where there are many
+people, neither would it when a gateway comes back once (decision 0111).
 """
 
 import msgspec
+
+from estimator.inertial.samples import AnyFolded
+from estimator.measurements.node import Node
 
 PROMPT_TICKS = 4
 """Readings late by fewer ticks are folded anew at once, however often they come."""
@@ -14,6 +18,10 @@ REFOLDED_PER_TICK = 4
 
 BACKLOG_TICKS = 60
 """Ticks folded anew beyond that before there is a hurry: a whole lag, as when a gateway comes back."""
+
+BACKLOG_WORK = 80
+"""The same in ticks times people, where there are more than one: each has a way of his own, with images of it
+to be asked about, and each solution with all of them takes longer."""
 
 FOLLOWED_PER_TICK = 2
 """Ticks by which the sure chain follows for each tick that incident time goes on."""
@@ -31,6 +39,7 @@ class CatchUp(msgspec.Struct, array_like=True):
         front: in a hurry, the tick up to which the sure chain goes; None: there is no hurry.
         since: where the chain that is shown leaves the sure one.
         until: up to which tick it was folded in a hurry.
+        people: responders who were introduced.
     """
 
     now: int | None = None
@@ -39,6 +48,17 @@ class CatchUp(msgspec.Struct, array_like=True):
     front: int | None = None
     since: int = 0
     until: int = 0
+    people: tuple[str, ...] = ()
+
+    @property
+    def allowed(self) -> int:
+        """Ticks folded anew, beyond those that are paid, before there is a hurry."""
+        return min(BACKLOG_TICKS, BACKLOG_WORK // max(len(self.people), 1))
+
+    def meet(self, reading: AnyFolded) -> None:
+        """Count who is introduced as a responder."""
+        if isinstance(reading, Node) and reading.role == "responder" and reading.node not in self.people:
+            self.people = (*self.people, reading.node)
 
     @property
     def hurrying(self) -> bool:
@@ -69,7 +89,7 @@ class CatchUp(msgspec.Struct, array_like=True):
         if tick > newest - PROMPT_TICKS:
             return False
         self.pending = max(self.pending, newest - tick)
-        if self.front is None and self.backlog + self.pending <= BACKLOG_TICKS:
+        if self.front is None and self.backlog + self.pending <= self.allowed:
             return False
         self.front = self.since = tick - 1 if self.front is None else min(self.front, tick - 1)
         self.until = newest - PROMPT_TICKS

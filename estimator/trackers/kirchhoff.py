@@ -18,10 +18,11 @@ from estimator.fusion.picture import look
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.trackers.base import TrackerSettings
-from estimator.trackers.lag import Lag, LagRecord
+from estimator.trackers.lag import Lag
+from estimator.trackers.lag_record import LagRecord
 from estimator.trackers.snapshot import read_snapshot
 
-VERSION = 45
+VERSION = 46
 
 
 class _Snapshot(msgspec.Struct, frozen=True, array_like=True):

@@ -9,6 +9,7 @@ something is asked for, so many batches cost one pass.
 
 Where late readings go on coming, this would be the work of a whole lag each second. Then what is shown is
 folded in a hurry, and the sure chain follows behind them (decision 0052): a function of the log all the same.
+It follows once the picture has been told (decision 0111).
 """
 
 import math
@@ -29,54 +30,9 @@ from estimator.measurements.node import LateNode, Node
 from estimator.smoothing.images.flip_ambiguity import HURRIED
 from estimator.trackers.catch_up import CatchUp
 from estimator.trackers.chain import Chain, hurried
+from estimator.trackers.lag_record import LagRecord, Leap
 
 LEAPS_KEPT = 8
-
-
-class Leap(msgspec.Struct, frozen=True, array_like=True):
-    """A reading that put the newest epoch forward by more than the lag: what goes on from before is too late.
-
-    Attributes:
-        node: the node that it names first.
-        from_t: the newest epoch before it (s); None: there was none.
-        to_t: the newest epoch with it (s).
-    """
-
-    node: str
-    from_t: float | None
-    to_t: float
-
-
-class LagRecord(msgspec.Struct, frozen=True, array_like=True):
-    """`Lag` in plain values, but for its states: the oldest and the newest one are kept beside it.
-
-    Attributes:
-        newest_t: see `Lag`.
-        too_late: see `Lag`.
-        received: see `Lag`.
-        readings: readings of each tick.
-        checkpoints: tick of each state kept.
-        notices: noticed in each tick.
-        given: notices of each tick that were taken.
-        loose: notices not taken yet that belong to no tick.
-        late: see `Lag`.
-        leaps: see `Lag`.
-        hurry: see `CatchUp`.
-        shown: tick of each state kept of the chain in a hurry; they come after the others.
-    """
-
-    newest_t: float | None
-    too_late: int
-    received: int
-    readings: list[tuple[int, list[AnyFolded]]]
-    checkpoints: list[int]
-    notices: dict[int, list[Notice]]
-    given: dict[int, list[Notice]]
-    loose: list[Notice]
-    late: dict[str, int] = msgspec.field(default_factory=dict)
-    leaps: list[Leap] = msgspec.field(default_factory=list)
-    hurry: CatchUp = msgspec.field(default_factory=CatchUp)
-    shown: list[int] = msgspec.field(default_factory=list)
 
 
 class Lag:
@@ -103,6 +59,7 @@ class Lag:
         self._sure = Chain([(-1, state)])
         self._hurry = CatchUp()
         self._shown: Chain | None = None
+        self._behind = False
         self._notices: dict[int, list[Notice]] = {}
         self._given: dict[int, list[Notice]] = {}
         self._loose: list[Notice] = []
@@ -125,7 +82,7 @@ class Lag:
 
     def record(self) -> tuple[LagRecord, list[FusionState]]:
         """A record of everything, and the states that belong to it, at most two of each chain."""
-        self.state()
+        self._ask_all()
         sure, shown = self._sure.ends(), [] if self._shown is None else self._shown.ends()
         record = LagRecord(
             self.newest_t,
@@ -150,6 +107,7 @@ class Lag:
             readings: in any order of epochs.
             known_t: when they came, by a clock that can be trusted (s): by no later epoch others are late.
         """
+        self._follow()
         missed: dict[str, AnyFolded] = {}
         room: tuple[int, int] | None = None
         together_t, together = math.nan, list[AnyFolded]()
@@ -157,6 +115,7 @@ class Lag:
         in_order = [(r.until_t, r) for r in in_pieces(readings)]
         in_order.sort(key=itemgetter(0))
         for until_t, reading in in_order:
+            self._hurry.meet(reading)
             if until_t == together_t:
                 # What goes for the one before goes for all of its epoch.
                 together.append(reading)
@@ -229,21 +188,37 @@ class Lag:
             insort(self._ticks, tick)
 
     def state(self) -> FusionState:
-        """The filter after all readings so far; not to be changed."""
+        """The filter after all readings so far; not to be changed.
+
+        In a hurry the sure chain is left behind, so that nobody waits for it.
+        """
         hurry = self._hurry
         if hurry.hurrying and self._shown is None:
             self._extend(self._sure, hurry.since)
             ticks = self._after(hurry.since, hurry.until)
             self._shown = hurried(self._sure.state, ticks, self._readings, self._notices)
-        if self._shown is not None:
-            self._extend(self._shown)
-        self._extend(self._sure, hurry.front)
-        self._commit()
-        return (self._shown or self._sure).state
+        self._behind = True
+        if self._shown is None:
+            self._follow()
+            return self._sure.state
+        self._extend(self._shown)
+        return self._shown.state
+
+    def _follow(self) -> None:
+        """Let the sure chain follow as far as it goes, where something was asked since it last did."""
+        if self._behind:
+            self._behind = False
+            self._extend(self._sure, self._hurry.front)
+            self._commit()
+
+    def _ask_all(self) -> None:
+        """Have all folded that can be."""
+        self.state()
+        self._follow()
 
     def settled(self) -> FusionState | None:
         """What `state` would be if there were no hurry, which goes on; None: there is none."""
-        self.state()
+        self._ask_all()
         if not self._hurry.hurrying:
             return None
         chain = Chain(self._sure.checkpoints)
@@ -282,7 +257,7 @@ class Lag:
 
     def take_notices(self) -> list[Notice]:
         """What was noticed since the last call; folding a tick anew does not repeat what was said of it."""
-        self.state()
+        self._ask_all()
         taken, self._loose = self._loose, []
         for tick in self._ticks:
             fresh = self._fresh(tick)
