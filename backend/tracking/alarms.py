@@ -7,11 +7,12 @@ Acknowledging and clearing count in the order of the log, not by their epochs: a
 must still be able to acknowledge.
 """
 
+from collections.abc import Sequence
 from typing import Self
 
 import msgspec
 
-from estimator.measurements import Alarm
+from estimator.measurements import Alarm, AnyReading
 from estimator.measurements.status import AlarmKind, AlarmState
 
 REPEAT_S = 30.0
@@ -116,3 +117,15 @@ class AlarmEntry(msgspec.Struct):
             self.texts.append(text)
             if len(self.texts) > TEXTS_KEPT:
                 del self.texts[1]
+
+
+def alarms_heard(readings: Sequence[AnyReading], came_t: float | None) -> Sequence[AnyReading]:
+    """Readings, with alarms from clocks that are ahead as of when they came (Unix s; None: not known)."""
+    if came_t is None or not any(isinstance(reading, Alarm) and reading.t > came_t for reading in readings):
+        return readings
+    return [
+        msgspec.structs.replace(reading, t=came_t)
+        if isinstance(reading, Alarm) and reading.t > came_t
+        else reading
+        for reading in readings
+    ]

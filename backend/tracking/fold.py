@@ -10,12 +10,13 @@ from backend.live import record
 from backend.live.past import SHOWN_WITHIN_S
 from backend.live.record import PictureRecord, RecordNotice
 from backend.log.base import LoggedBatch, RecordedFrame
+from backend.tracking.alarms import alarms_heard
 from backend.tracking.board import Board
 from backend.tracking.clock_set_back import MonotonicClock
 from backend.tracking.recorder import pieces, row_of
 from estimator import trackers
 from estimator.estimate import Relative
-from estimator.measurements import Alarm, AnyReading
+from estimator.measurements import AnyReading
 from estimator.trackers.base import Tracker, TrackerSettings
 
 VERSION = 9
@@ -27,6 +28,10 @@ often: where all of them are behind by as much, seconds are recorded as they bec
 
 class OtherState(Exception):  # noqa: N818 - names the condition
     """A state of another version, or for other settings: the log is folded from its start."""
+
+
+class EstimatorFailed(Exception):  # noqa: N818 - names the condition
+    """The tracker raised what it never should."""
 
 
 class State(msgspec.Struct, frozen=True, array_like=True):
@@ -61,18 +66,6 @@ class State(msgspec.Struct, frozen=True, array_like=True):
 
 class _Version(msgspec.Struct, frozen=True, array_like=True):
     version: int
-
-
-def _alarms_heard(readings: Sequence[AnyReading], came_t: float | None) -> Sequence[AnyReading]:
-    """Readings, with alarms from clocks that are ahead as of when they came (Unix s; None: not known)."""
-    if came_t is None or not any(isinstance(reading, Alarm) and reading.t > came_t for reading in readings):
-        return readings
-    return [
-        msgspec.structs.replace(reading, t=came_t)
-        if isinstance(reading, Alarm) and reading.t > came_t
-        else reading
-        for reading in readings
-    ]
 
 
 def _first_known(*times: float | None) -> float:
@@ -132,7 +125,7 @@ class IncidentFold:
             readings = self.clock.of(readings)
         came_t = batch.received + self.clock.ahead_s
         known_t = came_t if self._live else math.inf
-        readings = _alarms_heard(readings, came_t if self._live else batch.sent)
+        readings = alarms_heard(readings, came_t if self._live else batch.sent)
         if readings and (stood := self.stands(batch.received)) is not None:
             # The second may go on in what comes now, and would be recorded as of when that came.
             yield stood
@@ -213,6 +206,10 @@ class IncidentFold:
     def prepare(self) -> None:
         """Do now what the next picture needs: trackers put their work off until something is asked."""
         self._tracker.counts()
+
+    def settling(self) -> bool:
+        """Fold a little of what `settle` tells, while nothing comes; False: it has all that it needs."""
+        return self._asked is self._tracker and self._tracker.settle()
 
     def settle(self) -> bool:
         """Nothing comes for now: let what was folded in a hurry be told as it is without one.

@@ -18,7 +18,7 @@ from backend.log.base import DerivedWriter, LogReader, LogUnreadable, Snapshot
 from backend.tracking.answering import answer
 from backend.tracking.course import Course, Step
 from backend.tracking.fair_turns import for_a_while
-from backend.tracking.fold import IncidentFold
+from backend.tracking.fold import EstimatorFailed, IncidentFold
 from backend.tracking.heads import Head
 from backend.tracking.publication import Publication, Publish
 from backend.tracking.storing import Keeper
@@ -124,7 +124,7 @@ class Follower:
         self._keeper = Keeper(self._writer, self._head.incident, self.epoch, settled, self._course.at)
         try:
             await self._follow()
-        except _EstimatorFailed:
+        except EstimatorFailed:
             # Whatever the estimator makes of one incident's readings, the other incidents go on.
             log.exception("the estimator failed", incident=self._head.incident, seq=self._fold.seq)
             self.failed = True
@@ -157,13 +157,13 @@ class Follower:
                 heard_at = time.monotonic()
             await self._show()
             quiet_s = time.monotonic() - heard_at
-            behind = self._behind
-            if not behind and self._publication.lacks(self._fold.seq):
+            if not self._behind and self._publication.lacks(self._fold.seq):
                 await self._estimate(self._fold.prepare)
-            at_end = not behind and (self._head.closed or quiet_s >= LEAVE_S)
-            if not behind and (at_end or quiet_s >= IDLE_S) and await self._estimate(self._fold.settle):
-                self._publication.again()
-            if at_end or self._stopping.is_set():
+            ended = self._head.closed or quiet_s >= LEAVE_S
+            if not self._behind and (ended or quiet_s >= IDLE_S):
+                await self._tell_in_full()
+            behind = self._behind
+            if (ended and not behind) or self._stopping.is_set():
                 await self._show(last=True)
                 if await self._settle() or self._stopping.is_set():
                     return
@@ -171,6 +171,14 @@ class Follower:
                 await self._keep(caught_up=not behind, idle=quiet_s >= IDLE_S)
             if not behind or self._keeper.full:
                 await self._rest()
+
+    async def _tell_in_full(self) -> None:
+        """Tell without a hurry what was folded in one, unless more comes meanwhile."""
+        while await self._estimate(self._fold.settling):
+            if self._behind or self._stopping.is_set():
+                return
+        if await self._estimate(self._fold.settle):
+            self._publication.again()
 
     async def _in_compute(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         async with self._in_use:
@@ -181,7 +189,7 @@ class Follower:
         """Run what folds readings or asks for what was folded: trackers do their work at either.
 
         Raises:
-            _EstimatorFailed: the tracker could not.
+            EstimatorFailed: the tracker could not.
             LogUnreadable: the database failed while the log was folded anew.
         """
         try:
@@ -189,7 +197,7 @@ class Follower:
         except Unavailable:
             raise
         except Exception as error:
-            raise _EstimatorFailed from error
+            raise EstimatorFailed from error
 
     async def _restore(self) -> tuple[Course, int | None]:
         """The course as it was stored, or from the start; and up to which second rows stay as shown."""
@@ -290,7 +298,3 @@ class Follower:
             due_s = min(due_s, self._keeper.rests_s(soon=True))
         with contextlib.suppress(TimeoutError):
             await asyncio.wait_for(self._news.wait(), min(max(due_s, 0.001), LONGEST_REST_S))
-
-
-class _EstimatorFailed(Exception):  # noqa: N818 - names the condition
-    """The tracker raised what it never should."""

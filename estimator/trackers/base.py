@@ -47,6 +47,13 @@ class Tracker(Protocol):
             KeyError: a node is not known.
         """
 
+    def settle(self) -> bool:
+        """Do a little of the work of `settled`, so that readings that come meanwhile need not wait for all.
+
+        Returns:
+            There is more of it.
+        """
+
     def settled(self) -> Self | None:
         """Where late readings were folded in a hurry: a tracker that tells what they make without one.
 

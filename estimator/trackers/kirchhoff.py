@@ -54,6 +54,10 @@ class KirchhoffTracker:
             self._shown = _told(self._lag.state())
         return self._shown
 
+    def settle(self) -> bool:
+        """Fold the next second of what `settled` tells; False: it has all that it needs."""
+        return self._lag.settle()
+
     def settled(self) -> Self | None:
         """What to ask where late readings were folded in a hurry, and there is time; None: this one."""
         state = self._lag.settled()

@@ -60,6 +60,7 @@ class Lag:
         self._hurry = CatchUp()
         self._shown: Chain | None = None
         self._behind = False
+        self._settling: Chain | None = None
         self._notices: dict[int, list[Notice]] = {}
         self._given: dict[int, list[Notice]] = {}
         self._loose: list[Notice] = []
@@ -108,6 +109,7 @@ class Lag:
             known_t: when they came, by a clock that can be trusted (s): by no later epoch others are late.
         """
         self._follow()
+        self._settling = None
         missed: dict[str, AnyFolded] = {}
         room: tuple[int, int] | None = None
         together_t, together = math.nan, list[AnyFolded]()
@@ -216,14 +218,20 @@ class Lag:
         self.state()
         self._follow()
 
-    def settled(self) -> FusionState | None:
-        """What `state` would be if there were no hurry, which goes on; None: there is none."""
+    def settle(self) -> bool:
+        """Fold the next tick of what `settled` tells; False: there is none, or no hurry."""
         self._ask_all()
         if not self._hurry.hurrying:
-            return None
-        chain = Chain(self._sure.checkpoints)
-        chain.extend(self._after(chain.folded), self._readings, {})
-        return chain.state
+            return False
+        chain = self._settling = self._settling or Chain(self._sure.checkpoints)
+        chain.extend(self._after(chain.folded)[:1], self._readings, {})
+        return bool(self._after(chain.folded))
+
+    def settled(self) -> FusionState | None:
+        """What `state` would be if there were no hurry, which goes on; None: there is none."""
+        while self.settle():
+            pass
+        return None if self._settling is None else self._settling.state
 
     def _extend(self, chain: Chain, until: int | None = None) -> None:
         """Fold on to a tick, with it, or to the newest one."""

@@ -139,6 +139,10 @@ class PaperATracker:
         """
         return self._state.relative(self._sigma(), a, b)
 
+    def settle(self) -> bool:
+        """Nothing is ever left to be done."""
+        return False
+
     def settled(self) -> None:
         """Nothing is ever folded in a hurry."""
         return

@@ -3,6 +3,7 @@
 import math
 import random
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import msgspec
@@ -16,7 +17,10 @@ from backend.log.incidents import IncidentStore
 from backend.log.migrate import prepare
 from backend.tracking.course import Course
 from backend.tracking.fold import IncidentFold
+from estimator import trackers
 from estimator.measurements import Alarm, AnyReading, Displacement, Drop, Node, Range, Rssi, Status
+from estimator.trackers.base import Tracker, TrackerSettings
+from tests.backend.tracking.fragile import Fragile
 
 Write = Callable[[str, Sequence[Sequence[AnyReading]]], None]
 
@@ -142,3 +146,21 @@ def write(engine: sa.Engine) -> Write:
             assert isinstance(outcome, Appended), outcome
 
     return append
+
+
+@pytest.fixture
+def fragile(monkeypatch: pytest.MonkeyPatch) -> None:
+    def create(_name: str, settings: TrackerSettings) -> Tracker:
+        return Fragile(settings)
+
+    def restore(_name: str, state: bytes) -> Tracker:
+        return Fragile.restore(state)
+
+    monkeypatch.setattr(trackers, "create", create)
+    monkeypatch.setattr(trackers, "restore", restore)
+
+
+@pytest.fixture
+def compute() -> Iterator[ThreadPoolExecutor]:
+    with ThreadPoolExecutor(1) as pool:
+        yield pool

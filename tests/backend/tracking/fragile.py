@@ -10,13 +10,14 @@ from estimator.trackers.base import TrackerSettings
 
 
 class Fragile:
-    """A tracker that counts readings, and breaks at a `retire`, or after one when it is asked."""
+    """A tracker that counts readings, breaks at a `retire` or when asked after one, and never settles."""
 
     def __init__(self, settings: TrackerSettings, folded: int = 0) -> None:
         del settings
         self.folded = folded
         self.newest_t = 0.0
         self.lazy = False
+        self.endless = False
 
     def fold(self, readings: Sequence[AnyReading], known_t: float = math.inf) -> None:
         assert known_t == math.inf, "a recorded incident goes by its readings"
@@ -24,6 +25,7 @@ class Fragile:
             if isinstance(reading, Retire):
                 raise ZeroDivisionError("a defect")
             self.lazy = self.lazy or (isinstance(reading, Status) and reading.node == "late-to-break")
+            self.endless = isinstance(reading, Status) and reading.node == "endless"
             self.folded += 1
             self.newest_t = reading.t
 
@@ -36,6 +38,9 @@ class Fragile:
         if b == "nobody":
             raise KeyError(b)
         return None if a == "lost" else Relative(delta_m=(1.0, 2.0, 3.0), covariance_m2=(1, 0, 0, 1, 0, 1))
+
+    def settle(self) -> bool:
+        return self.endless
 
     def settled(self) -> Self | None:
         return None

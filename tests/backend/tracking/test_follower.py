@@ -1,7 +1,6 @@
 """An incident that the estimator cannot fold stands still and says so; the others go on."""
 
 import asyncio
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -14,34 +13,10 @@ from backend.log.derived import SqlDerivedWriter
 from backend.log.engine import writing
 from backend.log.incidents import IncidentStore
 from backend.log.read import SqlLogReader
-from backend.tracking import follower
-from backend.tracking.fold import IncidentFold
 from backend.tracking.follower import Follower
 from backend.tracking.heads import head_of, heads
-from backend.tracking.log_blocks import read_block
-from estimator import trackers
 from estimator.measurements import AnyReading, Retire, Status
-from estimator.trackers.base import Tracker, TrackerSettings
-from tests.backend.tracking.conftest import Write, a_gateway_behind, walk
-from tests.backend.tracking.fragile import Fragile
-
-
-@pytest.fixture
-def fragile(monkeypatch: pytest.MonkeyPatch) -> None:
-    def create(_name: str, settings: TrackerSettings) -> Tracker:
-        return Fragile(settings)
-
-    def restore(_name: str, state: bytes) -> Tracker:
-        return Fragile.restore(state)
-
-    monkeypatch.setattr(trackers, "create", create)
-    monkeypatch.setattr(trackers, "restore", restore)
-
-
-@pytest.fixture
-def compute() -> Iterator[ThreadPoolExecutor]:
-    with ThreadPoolExecutor(1) as pool:
-        yield pool
+from tests.backend.tracking.conftest import Write, walk
 
 
 class Watch:
@@ -235,37 +210,3 @@ def test_another_tracker_leaves_what_was_shown_and_goes_on_from_there(
     after = list(reader.frames(incident))
     assert after[: len(before) - 1] == before[:-1]
     assert after[-1] != before[-1]
-
-
-def test_once_nothing_comes_any_more_what_was_folded_in_a_hurry_is_shown_without_one(
-    engine: sa.Engine,
-    store: IncidentStore,
-    write: Write,
-    compute: ThreadPoolExecutor,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(follower, "IDLE_S", 0.2)
-    incident = store.create("behind", "recorded").id
-    batches = a_gateway_behind(60)
-    write(incident, batches)
-    fold = IncidentFold("kirchhoff", TrackerSettings())
-    while fold.seq < len(batches):
-        for batch, readings in read_block(SqlLogReader(engine), incident, fold.seq):
-            list(fold.fold(batch, readings))
-    hurried = fold.picture()
-    assert fold.settle()
-    assert fold.picture() != hurried
-
-    async def go() -> Watch:
-        watch = Watch(engine, store, incident, compute)
-        following = asyncio.create_task(watch.follower.run())
-        async with asyncio.timeout(30.0):
-            while not watch.pictures or decode(watch.pictures[-1].record) != fold.picture():
-                watch.published.clear()
-                await watch.published.wait()
-        watch.follower.stop()
-        await following
-        return watch
-
-    watch = asyncio.run(go())
-    assert watch.pictures[-1].seq == len(batches)

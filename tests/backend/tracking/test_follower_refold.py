@@ -19,12 +19,6 @@ from tests.backend.tracking.conftest import Write, through, walk
 from tests.backend.tracking.test_follower import Watch, follow
 
 
-@pytest.fixture
-def compute() -> Iterator[ThreadPoolExecutor]:
-    with ThreadPoolExecutor(1) as pool:
-        yield pool
-
-
 def test_who_is_told_to_stop_while_the_log_is_folded_anew_leaves_what_was_to_be_done(
     engine: sa.Engine,
     store: IncidentStore,

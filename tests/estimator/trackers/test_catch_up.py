@@ -97,6 +97,8 @@ def test_what_is_told_hangs_neither_on_what_was_asked_nor_on_restarts() -> None:
         often.estimates()
         if number % 5 == 0:
             often.settled()
+        elif number % 5 == 3:
+            often.settle()
         for tracker in (rarely, killed):
             tracker.fold(batch)
         if number % 9 == 4:
@@ -125,7 +127,28 @@ def test_once_nothing_is_late_any_more_all_is_as_if_nothing_had_been() -> None:
             for behind in (True, False):
                 tracker.fold(of_the_second(second, behind=behind))
     assert late.settled() is None
+    assert not late.settle()
     assert late.estimates() == in_time.estimates()
+
+
+def test_what_is_settled_step_by_step_is_what_is_settled_at_once_whatever_comes_between() -> None:
+    stepwise, at_once = KirchhoffTracker(), KirchhoffTracker()
+    *most, before, last = batches(60)
+    for batch in [*most, before]:
+        for tracker in (stepwise, at_once):
+            tracker.fold(batch)
+    assert stepwise.settle()
+    assert stepwise.settle()
+    for tracker in (stepwise, at_once):
+        tracker.fold(last)
+    steps = 1
+    while stepwise.settle():
+        steps += 1
+    assert steps > 10
+    told, expected = stepwise.settled(), at_once.settled()
+    assert told is not None
+    assert expected is not None
+    assert told.estimates() == expected.estimates()
 
 
 def hurry_after(lateness: list[int]) -> CatchUp:
