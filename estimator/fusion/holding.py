@@ -10,7 +10,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.entering import base_entry, beginnings
+from estimator.fusion.entering import base_entry, beginnings, late_start
 from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.fusion.motion.constant_velocity import move_free
@@ -158,6 +158,7 @@ def hold(state: FusionState, readings: Sequence[AnyHeld], singles: list[Single])
     table = table_of(state.graph.starts, singles, rows)
     epochs = np.concatenate([np.zeros(len(table) - len(rows)), pairs.epochs]) if singles else pairs.epochs
     update(state, table, epochs)
+    late_start.ask(state)
     beginnings.decide(state)
     nodes = state.nodes
     for name, heard_t in until.items():

@@ -8,6 +8,7 @@ from numba import njit
 from estimator.estimate import NodeEstimate, Relative
 from estimator.fusion import physics
 from estimator.fusion.entering.introduce import tuple_of, upper_triangle
+from estimator.fusion.entering.late_start import unsure_m2
 from estimator.fusion.entering.separated_unit import apart_m2, elsewhere_m2
 from estimator.fusion.entering.technologies import technology_variable
 from estimator.fusion.images import doubt_between_m2
@@ -30,7 +31,7 @@ def covariance_of(state: FusionState) -> Array:
     """Σ of the graph, n × n.
 
     It holds also that radios may be calibrated otherwise than is assumed, and told places and fixes be wrong;
-    and that a bearer is not where his boot stands.
+    that a bearer is not where his boot stands; and that nobody may have entered when the log began.
     """
     graph = state.graph
     found = graph.covariance()
@@ -59,6 +60,11 @@ def covariance_of(state: FusionState) -> Array:
         if node.raw and node.mode == "unit":
             rows = state.graph.starts[node.position] + np.arange(2)
             found[rows, rows] += physics.BESIDE_M**2
+    for name, m2 in unsure_m2(state).items():
+        start = graph.starts.get(state.nodes[name].position)
+        if start is not None:
+            rows = start + np.arange(2)
+            found[rows, rows] += m2
     return found
 
 

@@ -12,6 +12,7 @@ from estimator.smoothing.results.advice import advise
 from estimator.smoothing.results.calibration_doubt import doubt_scales, doubt_suspected
 from estimator.smoothing.results.evidence import explain
 from estimator.smoothing.results.heading_arcs import widen_by_arcs
+from estimator.smoothing.results.late_starts import doubt_starts
 from estimator.smoothing.results.tracks import tracks
 from estimator.smoothing.whole import solve_whole
 from estimator.trackers.base import Told, TrackerSettings
@@ -39,6 +40,7 @@ class BatchSmoother:
         doubt_scales(problem.layout, solved, covariances)
         doubt_suspected(problem, solved, covariances)
         widen(problem.layout, solved.x, modes, covariances)
+        doubt_starts(problem.layout, covariances)
         return tracks(problem.layout, solved.x, *covariances, lifetimes)
 
     def evidence(self, told: Told, node: str) -> Evidence | None:

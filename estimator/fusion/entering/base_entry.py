@@ -21,9 +21,9 @@ from estimator.fusion.motion.silence import LONGEST_S, gone_m2
 from estimator.measurements.base import PairReading
 from estimator.measurements.bearing import Bearing
 
-ENTERS, ON_THE_ROSTER = 0.5, 0.9
-"""How likely it is that who is heard of late has only come now; and who had been introduced long before: most
-units are switched on at the door."""
+ENTERS, ON_THE_ROSTER, STARTED_LATE = 0.5, 0.9, 0.1
+"""How likely it is that who is heard of late has only come now; who had been introduced long before: most
+units are switched on at the door; and who was there already when a log began that began too late."""
 
 
 def inside_s(state: FusionState, node: NodeState, t: float) -> float:
@@ -47,6 +47,8 @@ def may_be_inside(state: FusionState, node: NodeState, t: float) -> bool:
 
 def gone_since_m(node: NodeState, s: float) -> float:
     """How far along each axis one may have gone inside in a time (m)."""
+    if math.isinf(s):
+        return physics.REACH_M
     usual_mps, memory_s = physics.SPEED_SIGMA_MPS[node.role][0], physics.SPEED_MEMORY_S[node.role]
     return min(math.sqrt(gone_m2(usual_mps, memory_s, s, 0.0)), physics.REACH_M)
 
@@ -67,8 +69,10 @@ def turned_since(state: FusionState, node: NodeState, t: float) -> float | None:
     return math.hypot(turn_sigma(node), state.bias_sigma_radps(node) * on_s)
 
 
-def _enters(node: NodeState) -> float:
+def _enters(state: FusionState, node: NodeState) -> float:
     """How likely it is that somebody who is heard of late has only come now."""
+    if math.isinf(inside_s(state, node, state.newest_t)):
+        return STARTED_LATE
     return ON_THE_ROSTER if node.named else ENTERS
 
 
@@ -99,14 +103,14 @@ def prior_at_base(state: FusionState, node: NodeState, t: float) -> BasePrior | 
     reports, based = math.isfinite(node.whole_t), any(n.mode == "fixed" for n in state.nodes.values())
     if node.inside or not reports or not based or not may_be_inside(state, node, t):
         return None
-    entry_m = physics.ENTRY_SIGMA_M[0]
+    entry_m, enters = physics.ENTRY_SIGMA_M[0], _enters(state, node)
     sigma_m = math.hypot(entry_m, gone_since_m(node, t - node.whole_t))
     reach_m = math.hypot(entry_m, gone_since_m(node, inside_s(state, node, t)))
     return BasePrior(
         state.base_place(),
         sigma_m,
         reach_m,
-        math.log(_enters(node) / (1.0 - _enters(node))) + 2.0 * math.log(reach_m / sigma_m),
+        math.log(enters / (1.0 - enters)) + 2.0 * math.log(reach_m / sigma_m),
     )
 
 
@@ -116,7 +120,7 @@ def waits_for_ranges(state: FusionState, node: NodeState, t: float) -> bool:
     Soon, where no base says where it entered; as long as it is heard, where it may have been inside for long.
     Who has been is at no base by now, however long they take.
     """
-    if node.inside:
+    if math.isinf(inside_s(state, node, t)):
         return True
     if may_be_inside(state, node, t):
         (_, heard_t), reported_s = heard_between(state, node), t - min(node.whole_t, t)
@@ -135,7 +139,7 @@ def begin_at_base(state: FusionState, node: NodeState, t: float) -> None:
     long_s = inside_s(state, node, t)
     late = long_s > physics.UNSEEN_S
     if late:
-        across = math.hypot(across, math.sqrt(1.0 - _enters(node)) * gone_since_m(node, long_s))
+        across = math.hypot(across, math.sqrt(1.0 - _enters(state, node)) * gone_since_m(node, long_s))
         upwards = physics.UNDECIDED_UP_SIGMA_M
     known = replace(node.absolute, beginning="unheard" if late else "assumed")
     place(state, replace(node, absolute=known), t, state.base_place(), (across, across, upwards))
@@ -166,11 +170,11 @@ def end_unheard(state: FusionState, readings: Sequence[PairReading]) -> bool:
         if name in unheard and other in stands
     ]
     for name in dict.fromkeys(heard):
-        _end(state, state.nodes[name])
+        end_way(state, state.nodes[name])
     return bool(heard)
 
 
-def _end(state: FusionState, node: NodeState) -> None:
+def end_way(state: FusionState, node: NodeState) -> None:
     """End a way that begins where nobody knows, under its number, and begin another one of the same node."""
     state.graph.delete_nodes([v for v in (node.position, node.velocity, node.unit) if v in state.graph])
     state.ended[node.index] = replace(node, mode="retired", trail=())

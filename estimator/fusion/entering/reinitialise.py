@@ -13,6 +13,7 @@ from msgspec.structs import replace
 
 from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M
 from estimator.fusion.learned.link_correlation import SAME_PLACE
+from estimator.fusion.memory.late_start import DOUBTED
 from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -88,6 +89,9 @@ def check_ranges(state: FusionState, table: Array, good: Array) -> None:
         ends, own = table[:, [rows.A, rows.B]], starts[node.position]
         mine = (table[:, rows.KIND] == RANGE) & (ends == own).any(axis=1) & np.isin(ends, known).any(axis=1)
         believed = bool((good[mine] > SAME_PLACE).any())
+        if believed and node.absolute.late.odds > DOUBTED:
+            # Of a ring some range fits by chance: its likelihood counts, see `late_start`.
+            continue
         # Those of one link share their error, however many there are.
         links = set(table[mine, rows.LINK].tolist())
         if believed or (len(links) >= MORE and forget_beginning(state, node, height=False)):

@@ -38,7 +38,7 @@ def with_entry(modes: Sequence[Mode], seen: Sightings, sought: UndecidedNode, en
     if seen.kind == RANGE:
         # A ring is no larger than its radius.
         most_m = min(most_m, farthest_m(seen, best))
-    gained = entry.log_odds + math.log(_area_m2(here, most_m) / _area_m2(best, most_m))
+    gained = entry.log_odds + math.log(area_m2(here, most_m) / area_m2(best, most_m))
     here = here._replace(cost=here.cost - gained, before=here.before - gained)
     same_m = max(APART_M, 3.0 * here.sigma_m)
 
@@ -51,7 +51,7 @@ def with_entry(modes: Sequence[Mode], seen: Sightings, sought: UndecidedNode, en
     return sorted([here, *(mode for mode in modes if not same(mode))], key=lambda mode: mode.cost)
 
 
-def _area_m2(mode: Mode, most_m: float) -> float:
+def area_m2(mode: Mode, most_m: float) -> float:
     """How large a place is, of where one may be at all (m²)."""
     return min(mode.sigma_m, most_m) * min(mode.across_m, most_m)
 

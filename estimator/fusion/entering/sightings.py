@@ -1,5 +1,6 @@
 """Readings to a node whose position is not decided yet, and where they were made from."""
 
+from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +29,7 @@ class Sightings(NamedTuple):
         value: ranges (m) or powers less what was sent (dBm), m.
         sigma: claimed or assumed standard deviations, m.
         alike: how many readings of its link share an error, as each counts, m.
+        link: numbers of their links, m.
     """
 
     kind: int
@@ -38,6 +40,7 @@ class Sightings(NamedTuple):
     value: Array
     sigma: Array
     alike: Array
+    link: Array
 
 
 def heard_between(state: FusionState, node: NodeState) -> tuple[float, float]:
@@ -50,11 +53,22 @@ def heard_between(state: FusionState, node: NodeState) -> tuple[float, float]:
     return float(pairs[own, 0].min(initial=np.inf)), float(pairs[own, 0].max(initial=-np.inf))
 
 
-def of_node(state: FusionState, node: NodeState, since_t: float) -> Sightings | None:
-    """The sightings of a node by the technology that saw it most, ranges first; None where there are none."""
+def of_node(
+    state: FusionState, node: NodeState, since_t: float, by: Collection[int] | None = None
+) -> Sightings | None:
+    """The sightings of a node by the technology that saw it most, ranges first; None where there are none.
+
+    Args:
+        state: the fusion.
+        node: the node.
+        since_t: older ones do not count (s).
+        by: numbers of the nodes whose sightings count; None: all.
+    """
     pairs = state.ledger.table("pairs")
     pairs = pairs[(pairs[:, 1] <= RSSI) & (pairs[:, 0] >= since_t)]
     mine = pairs[(pairs[:, 2] == node.index) | (pairs[:, 3] == node.index)]
+    if by is not None:
+        mine = mine[np.isin(mine[:, 2:4], list(by)).any(axis=1)]
     ranged = mine[:, 1] == RANGE
     if ranged.any():
         mine = mine[ranged]
@@ -83,6 +97,7 @@ def of_node(state: FusionState, node: NodeState, since_t: float) -> Sightings | 
         mine[:, 4] - mine[:, 7],
         mine[:, 5],
         mine[:, 8],
+        mine[:, 9],
     )
 
 

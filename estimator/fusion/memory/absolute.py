@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from estimator.estimate import Vector3
 from estimator.fusion.learned.altimeter_zero import AltimeterZero
 from estimator.fusion.learned.noise import single_sigma
+from estimator.fusion.memory.late_start import LateStart
 from estimator.fusion.physics import TICK_S
 
 
@@ -79,6 +80,7 @@ class Absolute(msgspec.Struct, frozen=True, array_like=True, gc=False):
         off_m: how far the newest of them is off, east and north (m).
         counted_t: epoch of the newest fix that was counted (s): copies of one are one.
         disbelieved_m: standard deviation with which its place was told, if it does not stand there (m).
+        late: whether it was inside already when the log began, though it was taken to enter.
     """
 
     beginning: Beginning = "sure"
@@ -91,6 +93,7 @@ class Absolute(msgspec.Struct, frozen=True, array_like=True, gc=False):
     off_m: tuple[float, float] = (0.0, 0.0)
     counted_t: float = -math.inf
     disbelieved_m: float | None = None
+    late: LateStart = LateStart()
 
     @property
     def believed_m(self) -> Vector3 | None:

@@ -28,6 +28,7 @@ from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.results.calibration_doubt import doubted, scales, suspected
 from estimator.smoothing.results.heading_arcs import arc_excess_m2, last_headings, responses
+from estimator.smoothing.results.late_starts import doubt_now
 
 HELD_MAX = 30
 REJECTED_MAX = 20
@@ -84,6 +85,7 @@ def explain(
     doubt += arc_excess_m2(told[:, 3 : 3 + len(headings)], headings, start)
     told_scales = told[:, 3 + len(headings) :]
     doubt += doubted(judged, solved.x, told_scales, suspected(problem, solved), start)
+    doubt += doubt_now(layout, name)
     # Last, as for a track: it is the least that a height is unsure by, whatever else there is to doubt.
     doubt[2, 2] = max(doubt[2, 2], node.doubt_up_m2 - float(covariance[2, 2]))
     rows = problem.rows
