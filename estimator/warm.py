@@ -72,6 +72,7 @@ from estimator.smoothing.readings.linearisation import (
     separations,
 )
 from estimator.smoothing.readings.obstructed import excess
+from estimator.smoothing.readings.sharing import powers_sharing
 from estimator.smoothing.readings.stacked import scattered, sigmas
 from estimator.smoothing.readings.thinning import once_a_second
 from estimator.smoothing.readings.window_readings import LedgerRows, window_readings
@@ -169,6 +170,7 @@ def _warm_chain() -> None:
     scale_sigmas(readings, x, no, True, no, one, one, one)
     excess(slab, one, one, one)
     once_a_second(one, slab, one)
+    powers_sharing(heard, one, no)
     for alike in (one, np.ones((2, 2))[:, 0]):
         costs_of(one, one, place, no, alike)
     short_costs(one, one)

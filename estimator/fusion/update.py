@@ -6,7 +6,7 @@ from numba import njit
 from estimator.fusion import physics
 from estimator.fusion.entering.reinitialise import check_ranges
 from estimator.fusion.entering.technologies import REACH
-from estimator.fusion.learned.link_correlation import ERROR, KEPT, SAME_PLACE
+from estimator.fusion.learned.link_correlation import DRIFTS, ERROR, KEPT, SAME_PLACE
 from estimator.fusion.learned.noise import near_dbm
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.memory.state import FusionState
@@ -239,7 +239,9 @@ def tally(table: Array, found: Minimum, x: Array, links: Array, sums: Array) -> 
         error = residual / nominal
         if links[link, KEPT] > SAME_PLACE and not np.isnan(links[link, ERROR]):
             sums[source, 2] += good
-            sums[source, 3] += good * (error * links[link, ERROR] - unsure / nominal**2)
+            # What a filter with the right noise leaves of one tick tells nothing of the next one.
+            apart = 0.0 if table[r, KIND] == RSSI and links[link, DRIFTS] != 0.0 else unsure
+            sums[source, 3] += good * (error * links[link, ERROR] - apart / nominal**2)
         links[link, ERROR] = error if good > SAME_PLACE else np.nan
     return outliers
 

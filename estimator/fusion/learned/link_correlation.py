@@ -10,14 +10,16 @@ from estimator.fusion import physics
 from estimator.graph.dense import Array
 
 T, WAY, ALIKE, KEPT, ERROR, VALUE, ECHO_M, LOWER_S, ECHO_ODDS = range(9)
-TOLD, REPEATS, SINCE_T, SINCE_WAY = range(9, 13)
+TOLD, REPEATS, SINCE_T, SINCE_WAY, UNKNOWN, TAKEN, DRIFTS = range(9, 16)
 """Columns of a link's newest reading: its epoch; how far both ends had walked by then (m); how many readings,
 itself included, share its error; how much of the error before it still held, 0 to 1; its error in units of
 the assumed sigma, NaN before it is fused. Of ranges, see `echoes`: what was read (m); what it is too long by,
 or below 0 how much shorter it is than was believed before (m); for how long (s); log odds that it is. See
 `repeated_ranges`: what was told (m), believed or not; how often in a row; since when it is another value than
-before (s), and how far both ends had walked by then (m)."""
-NEW = (-math.inf, 0.0, 0.0, 0.0, math.nan, 0.0, 0.0, 0.0, 0.0, math.nan, 0.0, -math.inf, 0.0)
+before (s), and how far both ends had walked by then (m). See `power_sigma`: of what the link's powers share,
+the share of its variance that those before leave unknown; and how much of a number that all of them are off
+by is taken up by it, 0 to 1; whether an end moves and has no unit."""
+NEW = (-math.inf, 0.0, 0.0, 0.0, math.nan, 0.0, 0.0, 0.0, 0.0, math.nan, 0.0, -math.inf, 0.0, 1.0, 0.0, 0.0)
 """Nothing is left of a reading that was made an eternity ago."""
 NONE: Array = np.zeros((0, len(NEW)))
 SPARE = 16
@@ -30,7 +32,7 @@ class Links:
 
     Args:
         numbers: the row of each link.
-        table: their newest readings, links × 13 or more; both are taken over.
+        table: their newest readings, links × 16 or more; both are taken over.
 
     Attributes:
         numbers: the row of each link, which is its number in the ledger as well, by the technology that its
@@ -48,7 +50,7 @@ class Links:
 
     @property
     def table(self) -> Array:
-        """The newest readings, links × 13: a view, changed in place."""
+        """The newest readings, links × 16: a view, changed in place."""
         return self._table[: len(self.numbers)]
 
     def number(self, source: str, a: str, b: str) -> int:
@@ -74,10 +76,36 @@ def follow(link: Array, t: float, way_m: float) -> None:
     """Go on to the next reading on a link.
 
     Args:
-        link: its row, 13, changed.
+        link: its row, 16, changed.
         t: epoch of the reading (s).
         way_m: how far both ends have walked by then (m).
     """
     moved, waited = abs(way_m - link[WAY]), abs(t - link[T])
     kept = math.exp(-moved / physics.SHARED_M - waited / physics.SHARED_S)
     link[T], link[WAY], link[ALIKE], link[KEPT] = t, way_m, 1.0 + kept * link[ALIKE], kept
+    link[UNKNOWN], link[TAKEN] = kept**2 * link[UNKNOWN] + 1.0 - kept**2, kept * link[TAKEN]
+
+
+@njit(cache=True, error_model="numpy")
+def power_sigma(link: Array, factor: float, shared: float, nominal: float) -> float:
+    """Standard deviation to give to the next power on a link: by what it adds to those before it (dB).
+
+    What the powers of a link share is forgotten as an end walks on, a first-order Gauss-Markov process seen
+    through noise of each. Each counts for what it tells of a number that all of them are off by, once the
+    process is known as far as those before it tell (Bryson, Henrikson 1968): k readings at one place count
+    for k / (w + k c) together, with w the variance of each alone and c the common one, and n on a long way
+    for n / (w + c (1 + ρ) / (1 - ρ)), where ρ is what one keeps of the one before.
+
+    Args:
+        link: its row, 16, gone on to the reading (`follow`); changed.
+        factor: learned standard deviation of the technology over the assumed one.
+        shared: share of the variance that is common.
+        nominal: assumed standard deviation (dB).
+    """
+    total = (nominal * factor) ** 2
+    common = shared * total
+    unknown, taken = link[UNKNOWN] * common, link[TAKEN]
+    variance = unknown + total - common
+    gain = unknown / variance
+    link[UNKNOWN], link[TAKEN] = (1.0 - gain) * link[UNKNOWN], taken + gain * (1.0 - taken)
+    return float(max(math.sqrt(variance) / (1.0 - taken), physics.SIGMA_FLOOR_M))

@@ -97,6 +97,7 @@ def pair_rows(
             waited_s = pair[T] - newest[link, link_correlation.T]
             link_correlation.follow(newest[link], pair[T], way_m(a, pair[T]) + way_m(b, pair[T]))
             alike = newest[link, link_correlation.ALIKE]
+            newest[link, link_correlation.DRIFTS] = drifts(a) or drifts(b)
             if technology[KIND] == RANGE:
                 most_m = echoes.farthest_m(a, b, waited_s, technology[FACTOR] * pair[SIGMA])
                 echo_m = echoes.hear(newest[link], waited_s, pair[VALUE], most_m)
@@ -112,7 +113,7 @@ def pair_rows(
         if held[r]:
             kind = kind_of(technology)
             epochs[first[kind]] = pair[T]
-            fill(table[first[kind]], pair, technology, a, b, alike, marks, x)
+            fill(table[first[kind]], pair, technology, a, b, alike, newest, marks, x)
             if echo_m > 0.0:
                 row = table[first[kind]]
                 row[rows.OUTLIERS], row[rows.SHIFT], row[rows.SPREAD] = echoes.noise(echo_m, alike)
@@ -128,7 +129,15 @@ def kind_of(technology: Array) -> int:
 
 @njit(cache=True, error_model="numpy")
 def fill(
-    row: Array, pair: Array, technology: Array, a: Array, b: Array, alike: float, marks: Array, x: Array
+    row: Array,
+    pair: Array,
+    technology: Array,
+    a: Array,
+    b: Array,
+    alike: float,
+    newest: Array,
+    marks: Array,
+    x: Array,
 ) -> None:
     """Fill the row of a reading between two decided nodes, see `rows.Row`."""
     sigma, source, link, extra = pair[SIGMA], technology[SOURCE], pair[LINK], technology[START]
@@ -138,9 +147,14 @@ def fill(
         if technology[KIND] == BODY_BEARING:
             extra = a[recent_places.STATES]
     else:
-        sigma = link_sigma(technology[FACTOR], technology[SHARED], pair[SIGMA], alike)
+        known = technology[FACTOR], technology[SHARED], pair[SIGMA]
         through = abs(up_m(a, x) + at_a[2] - up_m(b, x) - at_b[2]) > physics.FLOOR_M
-        if through and a[recent_places.OUTSIDE] == 0.0 and b[recent_places.OUTSIDE] == 0.0:
+        through = through and a[recent_places.OUTSIDE] == 0.0 and b[recent_places.OUTSIDE] == 0.0
+        if technology[KIND] == RSSI and link >= 0 and (drifts(a) or drifts(b)) and not through:
+            sigma = link_correlation.power_sigma(newest[int(link)], *known)
+        else:
+            sigma = link_sigma(*known, alike)
+        if through:
             # It tells nothing of what its technology is like where no floor is between.
             sigma = through_sigma(sigma, technology[KIND] == RSSI, alike)
             source = link = -1.0
@@ -201,8 +215,10 @@ def way_m(end: Array, t: float) -> float:
     Without PDR the way is what the readings themselves tell: were they trusted less where it stands still, it
     would seem to stand still ever after. So it is thought to walk slowly all the time.
     """
-    return (
-        physics.FREE_WAY_MPS * t
-        if end[recent_places.MOVES] == recent_places.DRIFTS
-        else end[recent_places.WAY_M]
-    )
+    return physics.FREE_WAY_MPS * t if drifts(end) else end[recent_places.WAY_M]
+
+
+@njit(cache=True, error_model="numpy")
+def drifts(end: Array) -> bool:
+    """Whether a node moves, and no unit tells how."""
+    return bool(end[recent_places.MOVES] == recent_places.DRIFTS)

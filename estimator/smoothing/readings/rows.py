@@ -33,6 +33,7 @@ from estimator.smoothing.readings.linearisation import (
 )
 from estimator.smoothing.readings.obstructed import excess
 from estimator.smoothing.readings.partial import partial
+from estimator.smoothing.readings.sharing import powers_sharing
 from estimator.smoothing.readings.stacked import NOISES, StackedReadings, scattered, sigmas
 from estimator.smoothing.readings.thinning import once_a_second
 from estimator.smoothing.readings.window_readings import LedgerRows, technologies_of, window_readings
@@ -102,7 +103,7 @@ class Rows:
         )
         self._rows: StackedReadings = found.rows
         self.pairs, self.singles, self.drops = found.told
-        self.t, self.slab, self.columns, self.noise, self.nominal, self.source, self.alike = found.rows
+        self.t, self.slab, self.columns, self.noise, self.nominal, self.source, self.alike, _ = found.rows
         self.turns: NDArray[np.bool_] = found.turns
         self.shift: Array = np.zeros(len(self.nominal))
         self.sigma: Array = self.nominal.copy()
@@ -217,7 +218,9 @@ class Rows:
         other = copy(self)
         other.alike = np.concatenate([alike, self.alike[m:]])
         other.noise = self._usual_noise
-        told = sigmas(self._white, self._common, self._rows._replace(alike=other.alike))
+        sharing = self._rows.sharing.copy()
+        sharing[chosen] = powers_sharing(self.pairs[chosen], alike[chosen], sharing[chosen] > 0.0)
+        told = sigmas(self._white, self._common, self._rows._replace(alike=other.alike, sharing=sharing))
         other.sigma = np.sqrt(np.maximum(self.sigma**2 - self.told**2, 0.0) + told**2)
         return chosen, other
 

@@ -1,5 +1,6 @@
 """The readings of a window one below the other, and what is known of their noise, compiled."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,9 @@ from estimator.fusion.learned.noise import single_sigma
 from estimator.fusion.memory.ledger import BEARING, RANGE
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
+from estimator.smoothing.keyframes.ends import FREE
 from estimator.smoothing.keyframes.ground import Supports
+from estimator.smoothing.readings.sharing import powers_sharing
 
 DROP = len(physics.NOISES) - 1
 NOISES = np.array(physics.NOISES)
@@ -27,6 +30,7 @@ class StackedReadings(NamedTuple):
     nominal: Array
     source: Integers
     alike: Array
+    sharing: Array
 
 
 class Scatter(NamedTuple):
@@ -75,6 +79,7 @@ def arrange(
     m, n, size = len(pairs), len(singles), a.columns.shape[1]
     count = m + n + 3 * len(drops)
     t, nominal, alike, noise = np.empty(count), np.empty(count), np.ones(count), np.empty((count, 3))
+    sharing = np.zeros(count)
     found, source = np.empty(count, dtype=np.int64), np.full(count, -1)
     columns = np.full((count, 2 * size + 3), -1)
     for i in range(m):
@@ -103,7 +108,8 @@ def arrange(
             columns[i, c], columns[i, size + c] = by.columns[drop, c], crumb.columns[drop, c]
         for c in range(3):
             noise[i, c] = NOISES[DROP, c]
-    return StackedReadings(t, found, columns, noise, nominal, source, alike)
+    sharing[:m] = powers_sharing(pairs, alike, (a.kind == FREE) | (b.kind == FREE))
+    return StackedReadings(t, found, columns, noise, nominal, source, alike, sharing)
 
 
 @njit(cache=True)
@@ -136,6 +142,8 @@ def sigmas(white: Array, common: Array, rows: StackedReadings) -> Array:
     """Standard deviations of rows, m: those of technologies by their variances, others as they were told."""
     found = rows.nominal.copy()
     for i in range(len(found)):
-        if rows.source[i] >= 0:
+        if rows.sharing[i] > 0.0:
+            found[i] = max(math.sqrt(white[i] + rows.sharing[i] * common[i]), physics.SIGMA_FLOOR_M)
+        elif rows.source[i] >= 0:
             found[i] = single_sigma(white[i], common[i], rows.alike[i])
     return found

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from estimator.fusion.learned.link_correlation import ECHO_M, ECHO_ODDS, ERROR, KEPT, NEW
+from estimator.fusion.learned.link_correlation import DRIFTS, ECHO_M, ECHO_ODDS, ERROR, KEPT, NEW
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.physics import ECHOES
 from estimator.fusion.rows.gauss_newton import GOOD, INDEFINITE, RESIDUAL, SOLVED, UNSOLVABLE, Minimum
@@ -61,6 +61,16 @@ def test_good_readings_are_summed_by_technology_and_follow_one_another_on_their_
     assert (sums[2] == 0.0).all()
     assert links[0, ERROR] == pytest.approx(second)
     assert np.isnan(links[1, ERROR])
+
+
+def test_powers_of_who_has_no_unit_share_what_their_errors_say_and_all_others_less() -> None:
+    """Each is off by as much as the one before it on its link, and of no estimate is anybody sure."""
+    table, links, sums = np.zeros((4, FIELDS)), np.tile(NEW, (4, 1)), np.zeros((4, 6))
+    table[:, KIND], table[:, SOURCE], table[:, LINK] = [RSSI, RANGE, RSSI, RANGE], range(4), range(4)
+    table[:, EXTRA], table[:, NOMINAL], table[:, SIGMA] = -1, 2.0, 2.0
+    links[:, KEPT], links[:, ERROR], links[:2, DRIFTS] = 1.0, 0.5, 1.0
+    tally(table, found(np.ones(4), np.full(4, 4.0), np.ones(4)), X, links, sums)
+    assert sums[:, 3] == pytest.approx([0.25, -0.25, -0.25, -0.25])
 
 
 def test_who_rest_side_by_side_tell_nothing_of_the_noise_of_radios_farther_apart() -> None:

@@ -1,9 +1,54 @@
 """The newest reading on each link."""
 
+import math
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from estimator.fusion.learned.link_correlation import ALIKE, ERROR, KEPT, NEW, Links, follow
+from estimator.fusion import physics
+from estimator.fusion.learned.link_correlation import ALIKE, ERROR, KEPT, NEW, Links, follow, power_sigma
+from estimator.graph.dense import Array
+
+FACTOR, SHARED, NOMINAL_DB = 1.2, 0.4, 5.0
+COMMON_DB2, WHITE_DB2 = SHARED * (FACTOR * NOMINAL_DB) ** 2, (1.0 - SHARED) * (FACTOR * NOMINAL_DB) ** 2
+
+
+def sigmas_db(ways_m: Array) -> Array:
+    """What is given to the powers of a link, one at each of these ways along, m (dB)."""
+    link, found = np.array(NEW), list[float]()
+    for way_m in ways_m.tolist():
+        follow(link, 0.0, way_m)
+        found.append(power_sigma(link, FACTOR, SHARED, NOMINAL_DB))
+    return np.array(found)
+
+
+@given(st.lists(st.floats(0.0, 10.0), min_size=1, max_size=12))
+def test_powers_of_a_link_count_together_for_what_their_covariance_says_of_a_number_that_all_are_off_by(
+    steps_m: list[float],
+) -> None:
+    """Against the covariance of all of them, inverted whole."""
+    ways_m = np.cumsum(steps_m)
+    kept = np.exp(-np.abs(ways_m[:, None] - ways_m) / physics.SHARED_M)
+    covariance = COMMON_DB2 * kept + WHITE_DB2 * np.eye(len(ways_m))
+    ones = np.ones(len(ways_m))
+    assert (sigmas_db(ways_m) ** -2).sum() == pytest.approx(ones @ np.linalg.solve(covariance, ones))
+
+
+def test_powers_at_one_place_are_worth_one_that_is_off_by_what_they_share() -> None:
+    count = 1000
+    together = (sigmas_db(np.zeros(count)) ** -2).sum()
+    assert together == pytest.approx(count / (WHITE_DB2 + count * COMMON_DB2))
+
+
+def test_each_power_on_a_long_way_counts_for_as_much_as_the_others() -> None:
+    each_m = 0.5
+    late = sigmas_db(each_m * np.arange(100.0))[50:]
+    kept = math.exp(-each_m / physics.SHARED_M)
+    worth = 1.0 / (WHITE_DB2 + COMMON_DB2 * (1.0 + kept) / (1.0 - kept))
+    assert late == pytest.approx(late[0])
+    assert late[0] ** -2 == pytest.approx(worth, rel=0.1)
 
 
 def test_a_link_forgets_its_error_once_an_end_has_walked_a_room_on() -> None:
