@@ -17,7 +17,7 @@ from estimator.fusion.entering.base_entry import end_way
 from estimator.fusion.entering.guesses import forget_place
 from estimator.fusion.entering.introduce import turn_sigma
 from estimator.fusion.entering.known_places import INSIDE_M, Spoken, spoken
-from estimator.fusion.memory.late_start import DOUBTED, LateStart
+from estimator.fusion.memory.late_start import DOUBTED, LIKELY, LateStart
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -70,11 +70,22 @@ def ask(state: FusionState) -> None:
         odds = BEFOREHAND + speaks if max(hint, speaks) > 0.0 else -math.inf
         late = replace(known[node.node], odds=odds, hint=hint, told=own, reach_m=reach_m)
         state.nodes[node.node] = replace(node, absolute=replace(node.absolute, late=late))
+        if odds > LIKELY:
+            _tell(state, node, late)
         if said is not None and said.found:
             found = found or BEFOREHAND + hint + min(of_all, said.odds) > DECIDED
     if found:
         now = [state.nodes[node.node] for node in crew]
         _begin_again(state, [node for node in now if node.absolute.late.odds > 0.0])
+
+
+def _tell(state: FusionState, node: NodeState, late: LateStart) -> None:
+    chance = 1.0 / (1.0 + math.exp(-late.odds))
+    text = (
+        f"{node.node} may have been inside already when the log began (by {chance:.0%}), and is far from "
+        "where it is shown then: nobody said where it entered. A fix (`position`) tells where it is"
+    )
+    state.say("conflict", state.newest_t, node.node, text, once=f"{node.node} may have been inside")
 
 
 def _is_asked(state: FusionState, node: NodeState, begun_t: float, early: bool) -> bool:

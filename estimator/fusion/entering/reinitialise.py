@@ -13,7 +13,7 @@ from msgspec.structs import replace
 
 from estimator.fusion.entering.introduce import NO_PRIOR_SIGMA_M
 from estimator.fusion.learned.link_correlation import SAME_PLACE
-from estimator.fusion.memory.late_start import DOUBTED
+from estimator.fusion.memory.late_start import DOUBTED, LIKELY
 from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -59,7 +59,7 @@ def check_fix(
     )
     known = known.with_fix(t, fits, (east, north), SAME_SIGMAS * sigma_m)
     assumed = known.beginning in ("assumed", "unheard")
-    soon = 1 if node.way_m < SET_OFF_M else LATER
+    soon = 1 if node.way_m < SET_OFF_M or known.late.odds > LIKELY else LATER
     needed = soon if assumed else known.fits + MORE
     if fits and (assumed or known.fits >= MORE):
         known = replace(known, beginning="sure")

@@ -8,6 +8,10 @@ DOUBTED = math.log(0.001)
 """Log odds from which on it is doubted at all that he entered: one in a thousand who is a building away makes
 it as unsure as it is."""
 
+LIKELY = math.log(0.1 / 0.9)
+"""Log odds from which on those who are doubted are told of, and one fix is believed rather than where they
+were taken to begin: one of ten of them is a building away."""
+
 
 class LateStart(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Of one who was taken to be at the base when the log began.

@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from estimator.estimate import NodeEstimate
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
+from estimator.measurements.position import Position
 from estimator.measurements.range import Range
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
@@ -97,6 +98,27 @@ def test_as_long_as_nothing_tells_where_he_is_he_is_shown_and_nobody_is_sure(rad
         off = np.array(point.position_m[:2]) - way(start, int(point.t))
         ee, en, _, nn, *_ = point.covariance_m2
         assert off @ np.linalg.solve([[ee, en], [en, nn]], off) < SURE_AND_WRONG
+
+
+@pytest.mark.parametrize(("start", "radios", "said"), [((40.0, 4.0), CRUMBS, 1), ((1.0, 0.5), ["base"], 0)])
+def test_of_whom_that_is_doubted_it_is_said_once_and_what_would_tell(
+    start: Place, radios: Iterable[str], said: int
+) -> None:
+    tracker = KirchhoffTracker()
+    tracker.fold(walked(start, 30, radios))
+    found = [notice for notice in tracker.take_notices() if "inside already" in notice.text]
+    assert [notice.node for notice in found] == ["ff1"] * said
+    assert all("A fix (`position`)" in notice.text for notice in found)
+
+
+def test_who_is_doubted_is_where_a_fix_says_and_no_longer_doubted() -> None:
+    start, seconds = (40.0, 4.0), 30
+    here = way(start, BEGINS + 20)
+    told = Position(t=BEGINS + 20.2, node="ff1", position_m=(*here, 0.0), sigma_m=(1.0, 1.0, 2.0))
+    (_, one) = followed([*walked(start, seconds, CRUMBS), told])[-1]
+    assert off_m(one, way(start, BEGINS + seconds - 1)) < 2.0
+    assert one.covariance_m2 is not None
+    assert math.sqrt(one.covariance_m2[0]) < 3.0
 
 
 def test_whose_own_readings_say_that_he_enters_is_believed_beside_breadcrumbs_of_before() -> None:
