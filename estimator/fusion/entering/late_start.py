@@ -49,6 +49,9 @@ def ask(state: FusionState) -> None:
     if begun_t is None or not math.isfinite(begun_t):
         return
     early = state.newest_t - begun_t <= ASKED_S
+    # This is asked in each tick, and nearly always there is nobody.
+    if not early and all(node.absolute.late.odds <= DOUBTED for node in state.nodes.values()):
+        return
     crew = [node for node in state.nodes.values() if _is_asked(state, node, begun_t, early)]
     if not crew:
         return
