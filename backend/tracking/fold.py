@@ -30,10 +30,6 @@ class OtherState(Exception):  # noqa: N818 - names the condition
     """A state of another version, or for other settings: the log is folded from its start."""
 
 
-class EstimatorFailed(Exception):  # noqa: N818 - names the condition
-    """The tracker raised what it never should."""
-
-
 class State(msgspec.Struct, frozen=True, array_like=True):
     """Everything that folding on from a log entry needs.
 

@@ -3,22 +3,21 @@
 import asyncio
 import contextlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import Executor
-from typing import ParamSpec, TypeVar
 
 import structlog
 
 from backend.coordination.base import Answer, Query
 from backend.coordination.lease import Leases
-from backend.errors import Unavailable
 from backend.live import record
 from backend.live.record import PictureRecord
 from backend.log.base import DerivedWriter, LogReader, LogUnreadable, Snapshot
 from backend.tracking.answering import answer
+from backend.tracking.computing import Computing, EstimatorFailed
 from backend.tracking.course import Course, Step
 from backend.tracking.fair_turns import for_a_while
-from backend.tracking.fold import EstimatorFailed, IncidentFold
+from backend.tracking.fold import IncidentFold
 from backend.tracking.heads import Head
 from backend.tracking.publication import Publication, Publish
 from backend.tracking.storing import Keeper
@@ -30,9 +29,6 @@ LEAVE_S = 120.0
 """After so long without news an incident is left; the next reading brings the worker back to it."""
 
 LONGEST_REST_S, RETRY_S = 0.5, 1.0
-
-P = ParamSpec("P")
-T = TypeVar("T")
 
 log = structlog.get_logger(__name__)
 
@@ -70,7 +66,7 @@ class Follower:
         self._reader = reader
         self._writer = writer
         self._leases = leases
-        self._compute = compute
+        self._computing = Computing(compute)
         self._publication = Publication(head.incident, publish, shown_hz)
         self._news = asyncio.Event()
         self._news_seq = head.last_seq
@@ -78,7 +74,6 @@ class Follower:
         self._course: Course
         self._keeper: Keeper
         self._storing: asyncio.Task[bool] | None = None
-        self._in_use = asyncio.Lock()
 
     def hear(self, seq: int) -> None:
         """The log has grown."""
@@ -137,7 +132,7 @@ class Follower:
         """The answer to a question about two nodes."""
         if not hasattr(self, "_course"):
             return Answer(query.number, found=False, followed=False)
-        return await self._in_compute(answer, self._fold, query)
+        return await self._computing.run(answer, self._fold, query)
 
     @property
     def _fold(self) -> IncidentFold:
@@ -158,7 +153,7 @@ class Follower:
             await self._show()
             quiet_s = time.monotonic() - heard_at
             if not self._behind and self._publication.lacks(self._fold.seq):
-                await self._estimate(self._fold.prepare)
+                await self._computing.estimate(self._fold.prepare)
             ended = self._head.closed or quiet_s >= LEAVE_S
             if not self._behind and (ended or quiet_s >= IDLE_S):
                 await self._tell_in_full()
@@ -174,37 +169,18 @@ class Follower:
 
     async def _tell_in_full(self) -> None:
         """Tell without a hurry what was folded in one, unless more comes meanwhile."""
-        while await self._estimate(self._fold.settling):
+        while await self._computing.estimate(self._fold.settling):
             if self._behind or self._stopping.is_set():
                 return
-        if await self._estimate(self._fold.settle):
+        if await self._computing.estimate(self._fold.settle):
             self._publication.again()
-
-    async def _in_compute(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        async with self._in_use:
-            loop = asyncio.get_running_loop()
-            return await loop.run_in_executor(self._compute, lambda: function(*args, **kwargs))
-
-    async def _estimate(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        """Run what folds readings or asks for what was folded: trackers do their work at either.
-
-        Raises:
-            EstimatorFailed: the tracker could not.
-            LogUnreadable: the database failed while the log was folded anew.
-        """
-        try:
-            return await self._in_compute(function, *args, **kwargs)
-        except Unavailable:
-            raise
-        except Exception as error:
-            raise EstimatorFailed from error
 
     async def _restore(self) -> tuple[Course, int | None]:
         """The course as it was stored, or from the start; and up to which second rows stay as shown."""
         incident, live = self._head.incident, self._head.live
         span = await asyncio.to_thread(self._reader.frame_span, incident)
         snapshot = await asyncio.to_thread(self._reader.snapshot, incident)
-        course = await self._in_compute(Course.begin, self._reader, incident, live, snapshot)
+        course = await self._computing.run(Course.begin, self._reader, incident, live, snapshot)
         return course, None if span is None else span[1]
 
     async def _advance(self) -> bool:
@@ -219,7 +195,7 @@ class Follower:
             await asyncio.sleep(RETRY_S)
             return False
         work = self._folding(self._course.steps(block))
-        while await self._estimate(for_a_while, work):
+        while await self._computing.estimate(for_a_while, work):
             await self._show()
             await self._keep(caught_up=False)
             if self._course.passing and self._stopping.is_set():
@@ -245,7 +221,7 @@ class Follower:
         if self._publication.due_s() > 0 and not last:
             return
         self._publication.begin()
-        picture, encoded = await self._estimate(self._encoded)
+        picture, encoded = await self._computing.estimate(self._encoded)
         self._publication.show(fold.seq, fold.row, fold.since_t, picture, encoded)
 
     def _encoded(self) -> tuple[PictureRecord, bytes]:
@@ -267,7 +243,7 @@ class Follower:
             return
         snapshot = None
         if not self._course.passing and self._keeper.wants_snapshot(self._course.at, idle=idle and caught_up):
-            snapshot = await self._estimate(self._snapshot)
+            snapshot = await self._computing.estimate(self._snapshot)
         if snapshot is not None or not self._keeper.empty:
             self._storing = asyncio.create_task(self._keeper.save(snapshot))
             # Where the following ends before it does, nobody asks for its exception any more.
@@ -288,7 +264,7 @@ class Follower:
             self._storing = None
         if self._keeper.snapshot_at == self._course.at and self._keeper.empty:
             return True
-        snapshot = None if self._course.passing else await self._estimate(self._snapshot)
+        snapshot = None if self._course.passing else await self._computing.estimate(self._snapshot)
         return await self._keeper.save(snapshot)
 
     async def _rest(self) -> None:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 from msgspec.structs import replace
 
+from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude
 from estimator.measurements.bearing import Bearing
@@ -107,3 +108,30 @@ def standing_radios(seconds: int = 20, seed: int = 1) -> list[AnyReading]:
                 Range(t=float(second), a=f"anchor{i}", b="beacon", range_m=measured, technology="uwb")
             )
     return readings
+
+
+def from_goal_to_goal(
+    chance: np.random.Generator,
+    start_m: Array,
+    area_m: tuple[float | Array, float | Array],
+    step_m: float,
+    near_m: float,
+    steps: int,
+) -> Array:
+    """Where somebody is who walks straight to one place after another, after each step, n × 2 (m).
+
+    Args:
+        chance: draws where he goes next.
+        start_m: where he begins, 2.
+        area_m: the least and the most of east and north of where he goes.
+        step_m: how far each step is.
+        near_m: from where on he has arrived.
+        steps: how many there are.
+    """
+    at, goal, found = start_m, start_m, list[Array]()
+    for _ in range(steps):
+        while np.hypot(*(goal - at)) < near_m:
+            goal = chance.uniform(*area_m, 2)
+        at = at + (goal - at) / np.hypot(*(goal - at)) * step_m
+        found.append(at)
+    return np.array(found)

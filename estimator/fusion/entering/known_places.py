@@ -8,6 +8,7 @@ it costs to have one. What a wall or an echo makes of a link stays as long as it
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -70,7 +71,7 @@ def spoken(state: FusionState, node: NodeState, known: LateStart, begun_t: float
         known: what is known of it: what his unit faced, and how far it has led him.
         begun_t: since when (s).
     """
-    seen = of_node(state, node, state.newest_t - physics.UNSEEN_S, _known(state))
+    seen = of_node(state, node, state.newest_t - physics.UNSEEN_S, _placed(state))
     if seen is None:
         return None
     faced_rad, sigma_rad = known.faced or (0.0, turn_sigma(node))
@@ -97,17 +98,7 @@ def spoken(state: FusionState, node: NodeState, known: LateStart, begun_t: float
     each = np.array(
         [_cost(mode, sought, weights) - math.log(area_m2(mode, most_m) / INSIDE_M**2) for mode in modes]
     )
-    least = float(each.min())
-    share = np.exp(least - each)
-    inside = least - math.log(float(share.sum()))
-    shown_m = state.place(node)
-    off_m2 = [
-        float(((mode.position_m - shown_m)[:2] ** 2).sum())
-        + min(mode.sigma_m, most_m) ** 2
-        + min(mode.across_m, most_m) ** 2
-        for mode in modes
-    ]
-    reach_m = math.sqrt(0.5 * float(share @ off_m2 / share.sum()))
+    inside, reach_m = _elsewhere(modes, each, most_m, state.place(node))
     best = modes[int(np.argmin(each))]
     often = len(np.unique(np.floor(seen.t))) >= SECONDS and len(seen.t) >= physics.UNSEEN_SIGHTINGS_MIN
     odds = entered - inside
@@ -117,7 +108,31 @@ def spoken(state: FusionState, node: NodeState, known: LateStart, begun_t: float
     return Spoken(odds, often and there, reach_m)
 
 
-def _known(state: FusionState) -> set[int]:
+def _elsewhere(modes: Sequence[Mode], costs: Array, most_m: float, shown_m: Array) -> tuple[float, float]:
+    """What it costs to be at any of some places, and how far that is from where he is shown.
+
+    Args:
+        modes: the places, k.
+        costs: what each costs by itself, k (log likelihood).
+        most_m: each is no larger along an axis (m).
+        shown_m: where he is shown, 3 (m).
+
+    Returns:
+        What it costs (log likelihood); how far, along each horizontal axis (m).
+    """
+    least = float(costs.min())
+    share = np.exp(least - costs)
+    off_m2 = [
+        float(((mode.position_m - shown_m)[:2] ** 2).sum())
+        + min(mode.sigma_m, most_m) ** 2
+        + min(mode.across_m, most_m) ** 2
+        for mode in modes
+    ]
+    reach_m = math.sqrt(0.5 * float(share @ off_m2 / share.sum()))
+    return least - math.log(float(share.sum())), reach_m
+
+
+def _placed(state: FusionState) -> set[int]:
     """Numbers of radios whose place does not hang on where anybody began."""
     found = set()
     for node in state.nodes.values():

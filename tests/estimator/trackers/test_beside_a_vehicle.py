@@ -11,6 +11,7 @@ from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import SURE, outside
+from tests.estimator.walks import from_goal_to_goal
 
 ANCHORS_M = np.array([[0.7, 0.9, 0.5], [2.6, 0.9, 2.0], [2.6, -0.9, 2.0], [2.6, -0.9, 0.5]])
 SECONDS, RATE_HZ, SPEED_MPS, UP_M, FAR_M = 40, 10, 1.1, 1.0, 25.0
@@ -19,14 +20,10 @@ RANGE_SIGMA_M, LASTING_S = 0.02, 3.0
 
 def way(seed: int) -> Array:
     """From goal to goal on all sides of the vehicle: where he is ten times a second, n × 2 (m)."""
-    chance = np.random.default_rng(seed)
-    at, goal, found = np.array([-2.6, -4.3]), np.array([-2.6, -4.3]), list[Array]()
-    for _ in range(SECONDS * RATE_HZ):
-        while np.hypot(*(goal - at)) < 1.0:
-            goal = chance.uniform(-FAR_M, FAR_M, 2)
-        at = at + (goal - at) / np.hypot(*(goal - at)) * SPEED_MPS / RATE_HZ
-        found.append(at)
-    return np.array(found)
+    chance, start = np.random.default_rng(seed), np.array([-2.6, -4.3])
+    return from_goal_to_goal(
+        chance, start, (-FAR_M, FAR_M), SPEED_MPS / RATE_HZ, near_m=1.0, steps=SECONDS * RATE_HZ
+    )
 
 
 def measured(seed: int, anchors_m: float, lasting_m: float) -> list[AnyReading]:

@@ -13,6 +13,7 @@ from estimator.measurements.rssi import Rssi
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import SURE, outside
+from tests.estimator.walks import from_goal_to_goal
 
 ROOM_M, SECONDS, RATE_HZ, SPEED_MPS = (14.0, 10.0), 90, 2, 0.8
 POWER_DBM, EXPONENT, OWN_DB, LINK_DB, LINK_M = -55.0, 2.2, 4.0, 3.0, 2.0
@@ -23,15 +24,11 @@ PLACES_M = np.array([[0.0, 0.0], [14.0, 0.0], [14.0, 10.0], [0.0, 10.0], [7.0, 0
 @cache
 def way(seed: int) -> Array:
     """From goal to goal through the room: where he is at each reading, n × 2 (m)."""
-    chance = np.random.default_rng(seed)
-    at, goal = chance.uniform(0.0, ROOM_M, 2), chance.uniform(0.0, ROOM_M, 2)
-    found = list[Array]()
-    for _ in range(SECONDS * RATE_HZ):
-        while np.hypot(*(goal - at)) < SPEED_MPS:
-            goal = chance.uniform(0.0, ROOM_M, 2)
-        at = at + (goal - at) / np.hypot(*(goal - at)) * SPEED_MPS / RATE_HZ
-        found.append(at)
-    return np.array(found)
+    chance, room_m = np.random.default_rng(seed), (0.0, np.array(ROOM_M))
+    start = chance.uniform(*room_m, 2)
+    return from_goal_to_goal(
+        chance, start, room_m, SPEED_MPS / RATE_HZ, near_m=SPEED_MPS, steps=SECONDS * RATE_HZ
+    )
 
 
 def measured(seed: int, radios: int, gains_db: float) -> list[AnyReading]:

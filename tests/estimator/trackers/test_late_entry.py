@@ -15,14 +15,21 @@ from estimator.measurements.range import Range
 from estimator.measurements.retire import Retire
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.trackers.entry import BASE, off_m, shown, squared_error, step
+from tests.estimator.trackers.entry import (
+    BASE,
+    EAST,
+    Place,
+    followed,
+    off_m,
+    shown,
+    squared_error,
+    step,
+    surely_elsewhere,
+)
 
 LATE = 200
 ANCHORS = {"a1": (30.0, 20.0), "a2": (60.0, -5.0), "a3": (20.0, -15.0)}
 PLACED = [Node(t=0.0, node=name, role="anchor", position_m=(*at, 0.0)) for name, at in ANCHORS.items()]
-EAST = (0.5, 0.0, 0.0)
-SURE_AND_WRONG = 13.8
-Place = tuple[float, float]
 
 
 def others_inside(until: int) -> list[AnyReading]:
@@ -55,29 +62,13 @@ def walked(start: Place, seconds: int, radios: Sequence[str]) -> list[AnyReading
     return found
 
 
-def followed(readings: Sequence[AnyReading]) -> list[tuple[int, NodeEstimate]]:
-    """What is shown of him each second from when his unit reports on."""
-    tracker, found = KirchhoffTracker(), []
-    last = max(int(reading.t) for reading in readings)
-    tracker.fold([reading for reading in readings if reading.t < LATE])
-    for second in range(LATE, last + 1):
-        tracker.fold([reading for reading in readings if int(reading.t) == second])
-        found.append((second, shown(tracker)))
-    return found
-
-
 def wrong(found: Sequence[tuple[int, NodeEstimate]], start: Place) -> list[int]:
-    """The seconds in which he is shown elsewhere, sure of it."""
-    return [
-        second
-        for second, one in found
-        if one.position_m is not None and squared_error(one, way(start, second)) > SURE_AND_WRONG
-    ]
+    return surely_elsewhere(found, lambda second: way(start, second))
 
 
 @pytest.mark.parametrize("start", [(40.0, 4.0), (25.0, 12.0), (0.0, 0.0), (-2.0, 1.0)])
 def test_who_is_heard_late_is_where_his_ranges_say(start: Place) -> None:
-    found = followed([*others_inside(LATE), *walked(start, 40, ("base", "a1", "a2", "a3"))])
+    found = followed([*others_inside(LATE), *walked(start, 40, ("base", "a1", "a2", "a3"))], LATE)
     assert wrong(found, start) == []
     first = next(second for second, one in found if one.position_m is not None)
     assert first <= LATE + 5
@@ -85,18 +76,18 @@ def test_who_is_heard_late_is_where_his_ranges_say(start: Place) -> None:
 
 
 def test_whom_the_base_alone_ranges_beside_itself_has_just_come_in() -> None:
-    found = followed([*others_inside(LATE), *walked((1.0, 0.0), 30, ["base"])])
+    found = followed([*others_inside(LATE), *walked((1.0, 0.0), 30, ["base"])], LATE)
     assert wrong(found, (1.0, 0.0)) == []
     assert off_m(found[-1][1], way((1.0, 0.0), LATE + 29)) < 6.0
 
 
 def test_whom_the_base_alone_ranges_from_afar_is_not_shown_at_the_base() -> None:
-    found = followed([*others_inside(LATE), *walked((30.0, 30.0), 30, ["base"])])
+    found = followed([*others_inside(LATE), *walked((30.0, 30.0), 30, ["base"])], LATE)
     assert [second for second, one in found if one.position_m is not None] == []
 
 
 def test_of_whom_nothing_is_heard_nobody_is_sure() -> None:
-    found = followed([*others_inside(LATE), *walked((0.0, 0.0), 30, [])])
+    found = followed([*others_inside(LATE), *walked((0.0, 0.0), 30, [])], LATE)
     last = found[-1][1]
     assert off_m(last, way((0.0, 0.0), LATE + 29)) < 5.0
     assert last.covariance_m2 is not None
@@ -108,7 +99,7 @@ def test_who_was_unheard_is_found_by_ranges_and_not_on_a_side_by_chance() -> Non
     start = (40.0, 4.0)
     heard = [r for r in walked(start, 60, tuple(ANCHORS)) if isinstance(r, Displacement) or r.t > LATE + 30]
     readings = [*others_inside(LATE), *heard]
-    found = followed(readings)
+    found = followed(readings, LATE)
     assert wrong(found, start) == []
     assert off_m(found[-1][1], way(start, LATE + 59)) < 0.5
     track = BatchSmoother().smooth(readings)["ff1"]
@@ -124,7 +115,7 @@ def test_where_he_drops_something_of_whom_nothing_is_heard_nobody_knows() -> Non
 
 def test_who_is_introduced_as_he_enters_is_at_the_base_however_late_that_is() -> None:
     told = Node(t=LATE - 2.0, node="ff1", role="responder")
-    found = followed([*others_inside(LATE), told, *walked((0.0, 0.0), 20, [])])
+    found = followed([*others_inside(LATE), told, *walked((0.0, 0.0), 20, [])], LATE)
     assert off_m(found[-1][1], way((0.0, 0.0), LATE + 19)) < 2.0
     covariance = found[-1][1].covariance_m2
     assert covariance is not None
@@ -135,7 +126,8 @@ def test_who_has_been_on_the_roster_for_long_is_more_likely_to_enter_only_now_an
     """Most units are switched on at the door."""
     told = Node(t=1.0, node="ff1", role="responder")
     strangers, known = (
-        followed([*others_inside(LATE), *some, *walked((0.0, 0.0), 20, [])])[-1][1] for some in ([], [told])
+        followed([*others_inside(LATE), *some, *walked((0.0, 0.0), 20, [])], LATE)[-1][1]
+        for some in ([], [told])
     )
     assert off_m(known, way((0.0, 0.0), LATE + 19)) < 2.0
     assert known.covariance_m2 is not None
@@ -149,7 +141,7 @@ def test_whom_ranges_have_named_first_walks_once_his_unit_reports() -> None:
         r for s in range(LATE - 40, LATE) for r in ranged(float(s), start, chance=chance.normal(0.0, 0.1))
     ]
     readings = [*others_inside(LATE), *before, *walked(start, 40, tuple(ANCHORS))]
-    found = followed(readings)
+    found = followed(readings, LATE)
     assert {one.role for _, one in found} == {"responder"}
     assert wrong(found, start) == []
     assert off_m(found[-1][1], way(start, LATE + 39)) < 0.5
