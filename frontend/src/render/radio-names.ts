@@ -1,7 +1,8 @@
 /** The names of what stands, as far as there is room for them: where each is written, and what it takes up. */
 import { statusAt } from "../domain/fixes/staleness";
+import { overlap } from "./boxes";
 import type { Box, Placed, Scene } from "./layer";
-import { radios } from "./place";
+import { markReach, movers, radios } from "./place";
 
 /** From this scale on breadcrumbs carry their names (pixels per metre). */
 const NAMED_FROM = 14;
@@ -31,18 +32,50 @@ export function radioNames(scene: Scene): readonly Name[] {
   if (names === undefined) {
     const all = radios(scene);
     const named = scene.view.pixelsPerMetre >= NAMED_FROM || all.length <= NEAR_ENOUGH_TO_NAME;
+    const people = peopleOver(scene);
     const wanted = all
-      .flatMap(({ node, x, y, elsewhere }) =>
-        elsewhere
-          ? []
-          : [{ text: words(scene, node), x, y: y + UNDER_PX, said: Number(isFlagged(scene, node)) }],
-      )
+      .flatMap(({ node, x, y, elsewhere }) => {
+        const flagged = isFlagged(scene, node);
+        const name = elsewhere
+          ? null
+          : beside({ text: words(scene, node), x, y }, flagged, people, scene.view.text);
+        return name === null ? [] : [{ ...name, said: Number(flagged) }];
+      })
       // That one fell silent or was moved is worth more room than how another is called.
       .sort((a, b) => b.said - a.said);
     names = named ? readable(wanted, scene.view.text) : [];
     namesOf.set(scene, names);
   }
   return names;
+}
+
+/** What the marks of responders and UAVs lie over. */
+function peopleOver(scene: Scene): Box[] {
+  return movers(scene).flatMap(({ node, x, y, elsewhere }) => {
+    const reach = markReach(scene, node);
+    return elsewhere ? [] : [{ x: x - reach, y: y - reach, width: 2 * reach, height: 2 * reach }];
+  });
+}
+
+/**
+ * Where the name of a radio at (x, y) is written: under its mark. Where somebody stands over that, there is none, but
+ * that it fell silent or was moved (`flagged`) is said on another side: who walks by must not hide it.
+ */
+function beside({ text, x, y }: Name, flagged: boolean, people: readonly Box[], size: number): Name | null {
+  const aside = MARK_RADIUS + 3 + (text.length * CHARACTER_PX * size) / 2;
+  const line = LINE_PX * size;
+  const under = { text, x, y: y + UNDER_PX };
+  const over = y - UNDER_PX - line;
+  const sides = [
+    { text, x, y: over },
+    ...[y - line / 2, under.y, over].flatMap((top) => [
+      { text, x: x + aside, y: top },
+      { text, x: x - aside, y: top },
+    ]),
+  ];
+  const places = flagged ? [under, ...sides] : [under];
+  const seen = places.find((name) => !people.some((mark) => overlap(mark, boxOf(name, size))));
+  return seen ?? (flagged ? under : null);
 }
 
 /** What marks and names of radios take up. */
