@@ -93,22 +93,23 @@ test("the best piece of advice is said in one line", () => {
   const drop: Suggestion = { action: "drop", by: "l3-2", position_m: [1, 2, 3], sigma_m: 2.3, gain: 0.4 };
   const uav: Suggestion = { action: "uav", by: null, position_m: [12, -4, 10], sigma_m: 2.9, gain: 0.07 };
   expect(adviceWords(anAdvice(drop, uav), name)).toBe(
-    "A breadcrumb by L3-2 would take away 40 %: typical error 2.3 m instead of 3.0 m.",
+    "A breadcrumb by L3-2 would make FF1 surer: typical error 2.3 m instead of 3.0 m.",
   );
   expect(adviceWords(anAdvice(uav), name).replaceAll("\u00a0", " ")).toBe(
-    "A UAV at 12.0 m E, 4.0 m S, 10.0 m up would take away 7 %: typical error 2.9 m instead of 3.0 m.",
+    "A UAV at 12.0 m E, 4.0 m S, 10.0 m up would make FF1 surer: typical error 2.9 m instead of 3.0 m.",
   );
 });
 
-test("what would gain less than the screen shows is not called a change", () => {
+test("for what would gain less than the screen shows nobody is sent", () => {
   const drop: Suggestion = { action: "drop", by: "l3-2", position_m: [1, 2, 3], sigma_m: 2.97, gain: 0.02 };
   expect(adviceWords(anAdvice(drop), name).replaceAll("\u00a0", " ")).toBe(
-    "A breadcrumb by L3-2 would take away 2 %: typical error stays 3.0 m.",
+    "Nothing at hand would make FF1 surer: typical error 3.0 m.",
   );
 });
 
 test("where nothing helps, that is what is said", () => {
   const idle: Suggestion = { action: "drop", by: "l3-2", position_m: [1, 2, 3], sigma_m: 3, gain: 0 };
-  expect(adviceWords(anAdvice(), name)).toBe("Nothing at hand would make it surer.");
-  expect(adviceWords(anAdvice(idle), name)).toBe("Nothing at hand would make it surer.");
+  const nothing = "Nothing at hand would make FF1 surer: typical error 3.0 m.";
+  expect(adviceWords(anAdvice(), name)).toBe(nothing);
+  expect(adviceWords(anAdvice(idle), name)).toBe(nothing);
 });
