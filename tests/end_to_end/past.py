@@ -83,8 +83,26 @@ class PastCompared:
 
     @property
     def event(self) -> str:
-        """What the timeline says happened at the moment that is shown."""
+        """What the map says happened at the moment that is shown."""
         return " ".join(self.page.get_by_test_id("event").inner_text().split())
+
+    @property
+    def under_words_of_the_past(self) -> list[str]:
+        """The buttons of the map, and the lines of the board, over which words of the past are written."""
+        found: list[str] = self.page.evaluate(
+            """() => {
+              const words = [...document.querySelectorAll(
+                '[data-testid=event] span, [data-testid=compare], [data-testid=compare-said]')];
+              const over = (a, b) => a.left < b.right - 1 && b.left < a.right - 1
+                && a.top < b.bottom - 1 && b.top < a.bottom - 1 && a.width * b.width > 0;
+              return [...document.querySelectorAll(
+                'nav.controls button, [data-testid=storeys] button, [data-testid=responder]'
+              )].filter((part) =>
+                  words.some((word) => over(word.getBoundingClientRect(), part.getBoundingClientRect())))
+                .map((part) => part.getAttribute('aria-label') ?? part.textContent.trim());
+            }"""
+        )
+        return found
 
     @property
     def can_compare(self) -> bool:
