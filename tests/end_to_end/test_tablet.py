@@ -53,8 +53,9 @@ def test_what_a_mayday_says_leaves_the_map_its_room(
         incident,
         base(T0),
         responder(T0, "walker", "A", [2, 2, 0]),
+        responder(T0, "second", "A", [4, 2, 0]),
         alarm(T0, "walker", text=LUNAR),
-        alarm(T0, "walker", kind="pass", text="no movement for 30 s"),
+        alarm(T0, "second", kind="pass", text="no movement for 30 s"),
     )
     commander.sits_at(width, height)
     commander.opens(server.url, incident)
@@ -180,8 +181,9 @@ def test_enlarged_to_twice_its_size_the_screen_loses_nothing(
     server: Server, post: Post, commander: Commander, width: int, height: int
 ) -> None:
     incident = post.open_incident()
-    calls = [alarm(T0, "walker", text=LUNAR), alarm(T0, "walker", kind="pass")]
-    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]), *calls)
+    calls = [alarm(T0, "walker", text=LUNAR), alarm(T0, "second", kind="pass")]
+    crew = [responder(T0, name, "A", [2 * at, 2, 0]) for at, name in enumerate(("walker", "second"))]
+    heard(post, incident, base(T0), *crew, *calls)
     commander.sits_at(width // 2, height // 2)
     commander.opens(server.url, incident)
     eventually(lambda: len(commander.banners) == 2)
@@ -196,8 +198,9 @@ def test_text_grows_as_the_browser_is_set_and_pushes_nothing_off_the_screen(
     server: Server, post: Post, commander: Commander, width: int, height: int, times: float
 ) -> None:
     incident = post.open_incident()
-    calls = [alarm(T0, "walker", text=LUNAR), alarm(T0, "walker", kind="pass")]
-    heard(post, incident, base(T0), responder(T0, "walker", "A", [2, 2, 0]), *calls)
+    calls = [alarm(T0, "walker", text=LUNAR), alarm(T0, "second", kind="pass")]
+    crew = [responder(T0, name, "A", [2 * at, 2, 0]) for at, name in enumerate(("walker", "second"))]
+    heard(post, incident, base(T0), *crew, *calls)
     commander.sits_at(width, height)
     commander.opens(server.url, incident)
     usual = commander.text_px

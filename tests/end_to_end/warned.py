@@ -1,4 +1,4 @@
-"""What the commander is warned of beside alarms: low air, who is heard and not followed, what went wrong."""
+"""What the commander is warned of: calls, low air, who is heard and not followed, what went wrong."""
 
 from playwright.sync_api import Page
 
@@ -43,6 +43,36 @@ class WarningsSeen:
             })"""
         )
         return found
+
+    @property
+    def calls_half_seen(self) -> list[str]:
+        """Which calls are not seen whole: who it is, a first line of what is said, the button."""
+        found: list[str] = self.page.get_by_test_id("alarms").evaluate(
+            """(alarms) => {
+              const {top, bottom} = alarms.firstElementChild.getBoundingClientRect();
+              const whole = (part, height) => {
+                const box = part.getBoundingClientRect();
+                return box.top >= top - 1 && Math.min(box.bottom, box.top + height) <= bottom + 1;
+              };
+              return [...alarms.querySelectorAll('[data-testid=alarm]')].filter((call) => {
+                const words = call.querySelector('p');
+                return !whole(call.querySelector('.who'), 1000) || !whole(call.querySelector('.act'), 1000)
+                  || words !== null && !whole(words, 20);
+              }).map((call) => call.querySelector('.who').dataset.call);
+            }"""
+        )
+        return found
+
+    @property
+    def alarm_answers(self) -> str:
+        """What the button of the first alarm says, once a finger may press it; nothing until then."""
+        button = self.page.get_by_test_id("alarm").first.locator(".act:enabled")
+        return button.inner_text() if button.count() else ""
+
+    def words_said_whole(self, caller: int) -> bool:
+        """Whether nothing that a caller says, counted from the top, is left out in the alarm itself."""
+        words = self.page.get_by_test_id("alarm").nth(caller).locator("p")
+        return bool(words.evaluate("(words) => words.scrollHeight <= words.clientHeight + 1"))
 
     @property
     def low_air_is_loud(self) -> bool:

@@ -1,6 +1,19 @@
 import { describe, expect, test } from "vitest";
 import { anAlarm, NOON } from "../samples";
-import { alarmByNode, alarmKey, answered, inOrder, type StandingAlarms, standingAlarms } from "./alarms";
+import { alarmWord } from "../words";
+import {
+  alarmByNode,
+  alarmKey,
+  answerable,
+  answered,
+  callerKey,
+  callers,
+  inOrder,
+  linesEach,
+  type StandingAlarms,
+  saidBy,
+  standingAlarms,
+} from "./alarms";
 
 const raised = anAlarm();
 const acknowledged = anAlarm({ state: "acknowledged" });
@@ -67,4 +80,57 @@ test("a responder in two alarms shows the graver, one whose alarm is cleared sho
     anAlarm({ node: "ff2", state: "cleared" }),
   ]);
   expect([...byNode].map(([node, { alarm }]) => [node, alarm])).toEqual([["ff1", "mayday"]]);
+});
+
+describe("who calls in more than one way", () => {
+  const still = anAlarm({ alarm: "pass", t: NOON - 30, text: "no movement for 30 s" });
+  const everyone = (...list: Parameters<typeof standingAlarms>[0]) => callers(inOrder(standingAlarms(list)));
+  const kinds = (list: ReturnType<typeof answerable>) => list.map(({ alarm }) => alarm.alarm);
+
+  test("is one caller, by the gravest of the calls, where the most urgent one stands", () => {
+    const found = everyone(still, anAlarm(), anAlarm({ node: "ff2", t: NOON + 3 }));
+    expect(found.map(({ node, calls }) => [node, ...kinds(calls)])).toEqual([
+      ["ff1", "mayday", "pass"],
+      ["ff2", "mayday"],
+    ]);
+  });
+
+  test("is not answered, and comes first again, once there is a call that nobody has answered", () => {
+    const found = everyone(still, acknowledged, anAlarm({ node: "ff2", state: "acknowledged" }));
+    expect(found.map(({ node, acknowledged }) => [node, acknowledged])).toEqual([
+      ["ff1", false],
+      ["ff2", true],
+    ]);
+    expect(kinds(found[0]?.calls ?? [])).toEqual(["mayday", "pass"]);
+  });
+
+  test("is answered for what nobody has answered yet, then for all", () => {
+    const [half] = everyone(still, acknowledged);
+    const [whole] = everyone({ ...still, state: "acknowledged" }, acknowledged);
+    expect(half && kinds(answerable(half))).toEqual(["pass"]);
+    expect(whole && kinds(answerable(whole))).toEqual(["mayday", "pass"]);
+  });
+
+  test("is another one under the finger once a call or an answer comes", () => {
+    const keys = [[anAlarm()], [anAlarm(), still], [acknowledged, still]].map((list) =>
+      everyone(...list)
+        .map(callerKey)
+        .join(),
+    );
+    expect(new Set(keys).size).toBe(3);
+  });
+
+  test("says all of it, and by which call after the first", () => {
+    const said = (...list: Parameters<typeof standingAlarms>[0]) =>
+      everyone(...list).map((caller) => saidBy(caller, alarmWord));
+    expect(said(still, anAlarm({ text: "trapped" }))).toEqual(["trapped · PASS: no movement for 30 s"]);
+    expect(said(still, anAlarm({ text: null }))).toEqual(["PASS: no movement for 30 s"]);
+    expect(said(anAlarm({ text: null }))).toEqual([""]);
+  });
+});
+
+test("the more call, the fewer lines each says, and never none", () => {
+  expect([2, 3, 8].map((count) => linesEach(count, 269, false))).toEqual([2, 1, 1]);
+  expect(linesEach(2, 358, true)).toBe(3);
+  expect(linesEach(2, 358, false, 2)).toBe(1);
 });

@@ -63,6 +63,67 @@ export function inOrder(standing: StandingAlarms): StandingAlarm[] {
   return [...standing.values()].sort(byUrgency);
 }
 
+/** Who calls, and by what: a unit that lies still and a voice on the radio are one person in trouble. */
+export interface Caller {
+  readonly node: string;
+  /** The gravest first. */
+  readonly calls: readonly [StandingAlarm, ...StandingAlarm[]];
+  /** A person has answered all of them. */
+  readonly acknowledged: boolean;
+}
+
+/** Each caller once, in the order of what is most urgent of each; `list`: most urgent first. */
+export function callers(list: readonly StandingAlarm[]): Caller[] {
+  const byNode = new Map<string, [StandingAlarm, ...StandingAlarm[]]>();
+  for (const one of list) {
+    const known = byNode.get(one.alarm.node);
+    if (known === undefined) byNode.set(one.alarm.node, [one]);
+    else known.push(one);
+  }
+  return [...byNode].map(([node, calls]) => ({
+    node,
+    calls: calls.sort((a, b) => URGENCY[a.alarm.alarm] - URGENCY[b.alarm.alarm]),
+    acknowledged: calls.every(({ acknowledged }) => acknowledged),
+  }));
+}
+
+/** What tells whether there is another call, or another answer, under the button that answers a caller. */
+export function callerKey({ calls }: Caller): string {
+  return calls.map(({ alarm, acknowledged }) => `${alarmKey(alarm)} ${acknowledged}`).join();
+}
+
+/** Those of a caller's calls that a person's next word answers: the unanswered ones, or, where there are none, all. */
+export function answerable({ calls, acknowledged }: Caller): readonly StandingAlarm[] {
+  return acknowledged ? calls : calls.filter((one) => !one.acknowledged);
+}
+
+/** What somebody says who calls; what a second call of his says, after its name. `word`: how a kind is called. */
+export function saidBy(
+  { calls }: Pick<Caller, "calls">,
+  word: (kind: FrameAlarm["alarm"]) => string,
+): string {
+  return calls
+    .flatMap(({ alarm }, at) =>
+      alarm.text ? [at === 0 ? alarm.text : `${word(alarm.alarm)}: ${alarm.text}`] : [],
+    )
+    .join(" · ");
+}
+
+/** A caller's line with its name, and a line of what is said, each with its edges (CSS pixels, text of usual size). */
+const NAME_PX = 68;
+const NAME_IN_TWO_PX = 92;
+const LINE_PX = 24;
+
+/**
+ * In how many lines each of several callers says what is said, so that all of them are seen with their buttons.
+ *
+ * `room_px`: for all of them; `narrow`: a name takes two lines; `text`: how many times its usual size text has.
+ */
+export function linesEach(callers: number, room_px: number, narrow: boolean, text = 1): number {
+  const name_px = (narrow ? NAME_IN_TWO_PX : NAME_PX) * text;
+  return Math.max(1, Math.floor((room_px / callers - name_px) / (LINE_PX * text)));
+}
+
 /** The most urgent alarm of each node that is in one. */
 export function alarmByNode(alarms: Iterable<FrameAlarm>): Map<string, FrameAlarm> {
   const byNode = new Map<string, FrameAlarm>();

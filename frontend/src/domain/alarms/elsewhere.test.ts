@@ -56,7 +56,11 @@ describe("a call for help in another incident", () => {
     expect(list.map(({ incident }) => incident.id)).toEqual(["dock", "mill"]);
   });
 
-  test("is one entry with the other calls there, the gravest named", () => {
+  test("of one person in two ways is one person's", () => {
+    expect(calls(seen(MILL, anAlarm({ node: "ff9", alarm: "pass" }), mayday))[0]?.more).toBe(0);
+  });
+
+  test("is one entry with the others who call there, the gravest named", () => {
     const [call, ...others] = calls(seen(MILL, anAlarm({ node: "ff8", alarm: "pass" }), mayday));
     expect([call?.call.alarm.alarm, call?.more, others.length]).toEqual(["mayday", 1, 0]);
   });

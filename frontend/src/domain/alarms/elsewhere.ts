@@ -5,7 +5,7 @@ import { isBehind, standsStill } from "../picture";
 import { type IncidentClock, incidentTime } from "../time/clock";
 import type { FrameAlarm, FrameMessage, FrameNode, Incident } from "../types";
 import { alarmWord, nameOf } from "../words";
-import { byUrgency, inOrder, isCall, type StandingAlarm, standingAlarms } from "./alarms";
+import { byUrgency, callers, inOrder, isCall, type StandingAlarm, standingAlarms } from "./alarms";
 
 /** What a frame tells, as far as this is about it. */
 export interface Shown {
@@ -35,7 +35,7 @@ export interface CallElsewhere {
   /** The most urgent call there. */
   readonly call: StandingAlarm;
   readonly who: string;
-  /** Calls there beside this one. */
+  /** Who else calls there. */
   readonly more: number;
   readonly clock: IncidentClock;
 }
@@ -79,7 +79,7 @@ export function callsElsewhere(
       const call = glimpse?.calls[0];
       if (glimpse === undefined || call === undefined) return [];
       const who = glimpse.names.get(call.alarm.node) ?? call.alarm.node;
-      return [{ incident, call, who, more: glimpse.calls.length - 1, clock: glimpse.clock }];
+      return [{ incident, call, who, more: callers(glimpse.calls).length - 1, clock: glimpse.clock }];
     })
     .sort((a, b) => byUrgency(a.call, b.call));
 }

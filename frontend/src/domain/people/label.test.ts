@@ -53,6 +53,13 @@ test("who is in alarm on another storey than the one shown is labelled with his 
   expect(labelWords(upstairs, { ...ALL, level: 0, alarms }).whole).toEqual(["E7-1 MAYDAY", "3 s · Level 1"]);
 });
 
+test("of who calls the storey is said though there is no room for it, but for the one that is shown", () => {
+  const alarms = new Map([["ff1", anAlarm()]]);
+  expect(labelWords(upstairs, { ...ALL, alarms }).short).toBe("E7-1 MAYDAY · 3 s · Level 1");
+  expect(labelWords(upstairs, { ...ALL, alarms }).brief).toBe("E7-1 MAYDAY · 3 s");
+  expect(labelWords(upstairs, { ...ALL, level: 1, alarms }).short).toBe("E7-1 MAYDAY · 3 s");
+});
+
 test("whose air is low is labelled with it, beside a call for help as well", () => {
   const low = aNode({ air_state: "low", air_bar: 48 });
   expect(labelWords(low, ALL).whole[0]).toBe("E7-1 LOW AIR");
@@ -87,7 +94,7 @@ test("a long name gives way in its middle, not to the age", () => {
 test("of who calls for help and is not tracked any more it is said that he is not", () => {
   const alarms = new Map([["ff1", anAlarm()]]);
   const gone = aNode({ level: 1, level_p: 0.99, status: "retired" });
-  expect(labelWords(gone, { ...ALL, alarms }).short).toBe("E7-1 MAYDAY · NOT TRACKED 3 s");
+  expect(labelWords(gone, { ...ALL, alarms }).short).toBe("E7-1 MAYDAY · NOT TRACKED 3 s · Level 1");
 });
 
 test("of whom it is not seen on the map how far off he may be, it is said, also where there is no room", () => {

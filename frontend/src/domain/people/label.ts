@@ -21,7 +21,7 @@ export interface Labelled {
 export interface LabelWords {
   /** Its lines. */
   readonly whole: readonly string[];
-  /** Its one line, where there is no room: without the storey, unless that is not sure. */
+  /** Its one line, where there is no room: without the storey, unless that is not sure or he calls. */
   readonly short: string;
   /** Where there is no room for that either: that the storey is not sure, not which one it may be. */
   readonly brief: string;
@@ -46,7 +46,9 @@ export function labelWords(
   const line = `${name} · ${old}`;
   const unsure = said && storeyUnsure(node);
   const brief = unsure ? `${line} · storey?` : line;
-  const short = unsure && !narrow ? line + storey : brief;
+  // Who goes to help takes the stairs first.
+  const needed = unsure || (said && alarm !== undefined);
+  const short = needed && !narrow ? line + storey : brief;
   return { whole: [name, said ? old + storey : old], short, brief };
 }
 
