@@ -186,6 +186,10 @@ class IncidentFold:
             return second
         return max(second - self.clock.ahead_s, self.received - SHOWN_WITHIN_S)
 
+    def since_t_of(self, row: RecordedFrame) -> float:
+        """The same of what a row tells."""
+        return max(row.second, row.received - SHOWN_WITHIN_S) if self._live else row.second
+
     @property
     def _second(self) -> int | None:
         """The second under which what is known now is recorded; None before the first reading."""
@@ -204,7 +208,7 @@ class IncidentFold:
         self._tracker.counts()
 
     def settling(self) -> bool:
-        """Fold a little of what `settle` tells, while nothing comes; False: it has all that it needs."""
+        """Fold a little of what `settle` tells, while nothing comes; False: it needs little more."""
         return self._asked is self._tracker and self._tracker.settle()
 
     def settle(self) -> bool:

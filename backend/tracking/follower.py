@@ -12,7 +12,7 @@ from backend.coordination.base import Answer, Query
 from backend.coordination.lease import Leases
 from backend.live import record
 from backend.live.record import PictureRecord
-from backend.log.base import DerivedWriter, LogReader, LogUnreadable, Snapshot
+from backend.log.base import DerivedWriter, LogReader, LogUnreadable, RecordedFrame, Snapshot
 from backend.tracking.answering import answer
 from backend.tracking.computing import Computing, EstimatorFailed
 from backend.tracking.course import Course, Step
@@ -29,6 +29,10 @@ LEAVE_S = 120.0
 """After so long without news an incident is left; the next reading brings the worker back to it."""
 
 LONGEST_REST_S, RETRY_S = 0.5, 1.0
+
+AHEAD_AFTER_S = 0.3
+"""What was folded in a hurry is folded without one meanwhile, where nothing has come for so long: a gateway
+that sends what it held back sends more often."""
 
 log = structlog.get_logger(__name__)
 
@@ -70,15 +74,17 @@ class Follower:
         self._publication = Publication(head.incident, publish, shown_hz)
         self._news = asyncio.Event()
         self._news_seq = head.last_seq
+        self._news_at = time.monotonic()
         self._stopping = asyncio.Event()
         self._course: Course
         self._keeper: Keeper
         self._storing: asyncio.Task[bool] | None = None
+        self._recorded: tuple[RecordedFrame, int] | None = None
 
     def hear(self, seq: int) -> None:
         """The log has grown."""
         if seq > self._news_seq:
-            self._news_seq = seq
+            self._news_seq, self._news_at = seq, time.monotonic()
             self._news.set()
 
     def hear_of(self, head: Head) -> bool:
@@ -154,7 +160,9 @@ class Follower:
             quiet_s = time.monotonic() - heard_at
             if not self._behind and self._publication.lacks(self._fold.seq):
                 await self._computing.estimate(self._fold.prepare)
+                await self._show()
             ended = self._head.closed or quiet_s >= LEAVE_S
+            more = await self._settle_ahead()
             if not self._behind and (ended or quiet_s >= IDLE_S):
                 await self._tell_in_full()
             behind = self._behind
@@ -164,8 +172,15 @@ class Follower:
                     return
             else:
                 await self._keep(caught_up=not behind, idle=quiet_s >= IDLE_S)
-            if not behind or self._keeper.full:
+            if (not behind and not more) or self._keeper.full:
                 await self._rest()
+
+    async def _settle_ahead(self) -> bool:
+        """While nothing waits, fold a little of what was folded in a hurry; False: nothing more for now."""
+        busy = self._behind or self._stopping.is_set() or self._publication.lacks(self._fold.seq)
+        if busy or time.monotonic() < self._news_at + AHEAD_AFTER_S:
+            return False
+        return await self._computing.estimate(self._fold.settling)
 
     async def _tell_in_full(self) -> None:
         """Tell without a hurry what was folded in one, unless more comes meanwhile."""
@@ -211,14 +226,23 @@ class Follower:
         for row, whole in steps:
             if row is not None:
                 self._keeper.take(row, put_back=self._fold.clock.ahead_s > 0)
+                # The entry that is being folded is not whole in it.
+                self._recorded = row, min(row.seq, self._fold.seq - 1)
             yield whole
 
     async def _show(self, *, last: bool = False) -> None:
         """Publish the picture if it is new and the last one was long enough ago, or no other will follow."""
         fold = self._fold
-        if self._course.passing or not fold.whole or not self._publication.lacks(fold.seq):
+        behind = (self._behind or not fold.whole) and not last
+        recorded, self._recorded = self._recorded, None
+        if self._course.passing:
             return
-        if self._publication.due_s() > 0 and not last:
+        if behind and recorded is not None:
+            row, seq = recorded
+            self._publication.show_recorded(row, seq, fold.row, fold.since_t_of(row))
+        if not fold.whole or not self._publication.lacks(fold.seq):
+            return
+        if self._publication.due_s(behind=behind) > 0 and not last:
             return
         self._publication.begin()
         picture, encoded = await self._computing.estimate(self._encoded)

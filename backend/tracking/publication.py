@@ -8,6 +8,11 @@ import msgspec
 from backend.coordination.base import Answer, Picture
 from backend.live import record
 from backend.live.record import EMPTY, PictureRecord, RecordNotice
+from backend.log.base import RecordedFrame
+
+OWN_EVERY_S = 1.0
+"""While more is to be folded, what is recorded is shown: a picture for its own sake is made only after so
+long without one. It solves the window of a second that has just begun, which the next entry changes."""
 
 Publish = Callable[[Picture | Answer], None]
 
@@ -34,9 +39,14 @@ class Publication:
         """The web process has not been told of a log entry."""
         return seq != self._shown_seq
 
-    def due_s(self) -> float:
-        """In how many seconds the next picture may be published; not more than 0: now."""
-        return self._shown_at + self._every_s - time.monotonic()
+    def due_s(self, *, behind: bool = False) -> float:
+        """In how many seconds the next picture may be published; not more than 0: now.
+
+        Args:
+            behind: one that is made for it alone, while more is to be folded.
+        """
+        every_s = max(OWN_EVERY_S, self._every_s) if behind else self._every_s
+        return self._shown_at + every_s - time.monotonic()
 
     def begin(self) -> None:
         """A picture is being made: the next one is due so long after this moment."""
@@ -56,6 +66,19 @@ class Publication:
         """
         self._shown_seq, self._shown = seq, picture
         self._publish(Picture(self._incident, seq, encoded, row, since_t=since_t))
+
+    def show_recorded(self, row: RecordedFrame, seq: int, newest: int | None, since_t: float) -> None:
+        """Publish what was known at the end of a second, if it is new and one is due: it costs no more.
+
+        Args:
+            row: of that second.
+            seq: newest log entry that is whole in it.
+            newest: newest second whose row was made.
+            since_t: see `show`.
+        """
+        if self.due_s() <= 0 and (self._shown_seq is None or seq > self._shown_seq):
+            self.begin()
+            self.show(seq, newest, since_t, record.decode(row.record), row.record)
 
     def again(self) -> None:
         """The web process may have missed what was published: the newest picture is told once more."""

@@ -1,7 +1,9 @@
-"""What a follower shows in place of what was folded in a hurry, once nothing comes any more."""
+"""What a follower shows while it cannot keep up, and in place of what was folded in a hurry."""
 
 import asyncio
+import time
 from concurrent.futures import ThreadPoolExecutor
+from threading import Semaphore
 
 import pytest
 import sqlalchemy as sa
@@ -12,9 +14,11 @@ from backend.log.read import SqlLogReader
 from backend.tracking import follower
 from backend.tracking.fold import IncidentFold
 from backend.tracking.log_blocks import read_block
+from estimator.estimate import NodeEstimate
 from estimator.measurements import Status
 from estimator.trackers.base import TrackerSettings
 from tests.backend.tracking.conftest import Write, a_gateway_behind
+from tests.backend.tracking.fragile import Fragile
 from tests.backend.tracking.test_follower import Watch, status
 
 
@@ -80,3 +84,84 @@ def test_what_was_folded_in_a_hurry_keeps_nobody_waiting_while_it_is_folded_with
             await following
 
     asyncio.run(go())
+
+
+@pytest.mark.usefixtures("fragile")
+def test_who_cannot_keep_up_shows_what_is_recorded_of_each_second_and_makes_no_other_picture(
+    engine: sa.Engine,
+    store: IncidentStore,
+    write: Write,
+    compute: ThreadPoolExecutor,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    seconds, made, told = 12, list[float](), Fragile.estimates
+
+    def slowly(tracker: Fragile) -> list[NodeEstimate]:
+        made.append(tracker.newest_t)
+        time.sleep(0.15)
+        return told(tracker)
+
+    monkeypatch.setattr(Fragile, "estimates", slowly)
+    incident = store.create("slow", "recorded").id
+    write(incident, [[status(float(second))] for second in range(1, seconds + 1)])
+
+    async def go() -> Watch:
+        watch = Watch(engine, store, incident, compute)
+        following = asyncio.create_task(watch.follower.run())
+        await watch.shown(seconds)
+        watch.follower.stop()
+        await following
+        return watch
+
+    watch = asyncio.run(go())
+    assert [picture.seq for picture in watch.pictures] == list(range(1, seconds + 1))
+    assert made == [float(second) for second in range(1, seconds + 1)]
+    rows = list(SqlLogReader(engine).frames(incident))
+    assert [picture.record for picture in watch.pictures] == [row.record for row in rows]
+    assert [picture.since_t for picture in watch.pictures] == [row.second for row in rows]
+
+
+@pytest.mark.usefixtures("fragile")
+def test_what_was_folded_in_a_hurry_is_folded_without_one_between_what_comes(
+    engine: sa.Engine,
+    store: IncidentStore,
+    write: Write,
+    compute: ThreadPoolExecutor,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    settled, steps, settle = list[float](), Semaphore(0), Fragile.settle
+
+    def noted(tracker: Fragile) -> bool:
+        settled.append(time.monotonic())
+        steps.release()
+        time.sleep(0.01)
+        return settle(tracker)
+
+    monkeypatch.setattr(Fragile, "settle", noted)
+    monkeypatch.setattr(follower, "IDLE_S", 60.0)
+    incident = store.create("endless", "recorded").id
+    write(incident, [[Status(t=1.0, node="endless", battery=0.5)]])
+
+    async def go() -> float:
+        watch = Watch(engine, store, incident, compute)
+        following = asyncio.create_task(watch.follower.run())
+        await watch.shown(1)
+        await asyncio.to_thread(steps.acquire)
+        write(incident, [[Status(t=2.0, node="endless", battery=0.5)]])
+        heard_at = time.monotonic()
+        watch.follower.hear(2)
+        await watch.shown(2)
+        until_then = len(settled)
+        for _ in range(until_then):
+            await asyncio.to_thread(steps.acquire)
+        watch.follower.stop()
+        await following
+        assert len(settled) > until_then
+        return heard_at
+
+    async def in_time() -> float:
+        async with asyncio.timeout(30.0):
+            return await go()
+
+    heard_at = asyncio.run(in_time())
+    assert not any(heard_at + 0.1 < at < heard_at + follower.AHEAD_AFTER_S for at in settled)
