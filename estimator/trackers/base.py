@@ -51,7 +51,7 @@ class Tracker(Protocol):
         """Do a little of the work of `settled`, so that readings that come meanwhile need not wait for all.
 
         Returns:
-            There is more of it.
+            There is more of it, beside what the next readings may change.
         """
 
     def settled(self) -> Self | None:

@@ -32,10 +32,12 @@ class Chain:
 
     Attributes:
         checkpoints: those that are kept.
+        ahead: ticks that were folded before their turn, with the states after them and what was noticed.
     """
 
     def __init__(self, checkpoints: Sequence[Checkpoint], effort: Effort = LIVE) -> None:
         self.checkpoints = list(checkpoints)
+        self.ahead: list[tuple[int, FusionState, list[Notice]]] = []
         self._effort = effort
 
     @property
@@ -54,6 +56,8 @@ class Chain:
 
     def roll_back(self, tick: int) -> None:
         """Forget the states that readings of a tick would change."""
+        while self.ahead and self.ahead[-1][0] >= tick:
+            self.ahead.pop()
         while self.checkpoints[-1][0] >= tick:
             self.checkpoints.pop()
 
@@ -71,14 +75,26 @@ class Chain:
             notices: what was noticed in each tick; takes those of these ticks.
         """
         for tick in ticks:
-            after = self.state.copy()
-            fold_tick(after, end_of_tick(tick), in_order(readings[tick]))
-            after.bent_m = max(after.bent_m, found_m(self.state, after))
-            solve_if_due(after, end_of_tick(tick), effort=self._effort)
-            notices[tick] = list(after.notices)
+            if not self.ahead:
+                self.fold_ahead(tick, readings[tick])
+            _, after, notices[tick] = self.ahead.pop(0)
             self.checkpoints.append((tick, after))
             if len(self.checkpoints) > MOST:
                 self._thin()
+
+    def fold_ahead(self, tick: int, readings: Sequence[AnyFolded]) -> None:
+        """Fold a tick before its turn, and solve the window where it is due.
+
+        Args:
+            tick: the one after the newest one that is folded, before its turn or not.
+            readings: of it.
+        """
+        before = self.ahead[-1][1] if self.ahead else self.state
+        after = before.copy()
+        fold_tick(after, end_of_tick(tick), in_order(readings))
+        after.bent_m = max(after.bent_m, found_m(before, after))
+        solve_if_due(after, end_of_tick(tick), effort=self._effort)
+        self.ahead.append((tick, after, list(after.notices)))
 
     def _thin(self) -> None:
         """Leave checkpoints out as they age; the two newest always stay."""
@@ -131,7 +147,7 @@ def found_m(before: FusionState, after: FusionState) -> float:
 
 
 def hurried(
-    before: FusionState,
+    before: Chain,
     ticks: Sequence[int],
     readings: Mapping[int, Sequence[AnyFolded]],
     notices: dict[int, list[Notice]],
@@ -139,12 +155,14 @@ def hurried(
     """A chain that goes on after ticks which were folded with one solution of the window, after the last.
 
     Args:
-        before: the state before them.
-        ticks: they are, at least one, in order.
+        before: the chain before them.
+        ticks: they are, in order.
         readings: of each tick.
         notices: what was noticed in each tick; takes those of these ticks.
     """
-    state = before.copy()
+    if not ticks:
+        return Chain(before.checkpoints[-1:], HURRIED)
+    state = before.state.copy()
     for tick in ticks:
         fold_tick(state, end_of_tick(tick), in_order(readings[tick]))
         notices[tick] = list(state.notices)

@@ -22,7 +22,7 @@ from estimator.trackers.lag import Lag
 from estimator.trackers.lag_record import LagRecord
 from estimator.trackers.snapshot import read_snapshot
 
-VERSION = 46
+VERSION = 47
 
 
 class _Snapshot(msgspec.Struct, frozen=True, array_like=True):
@@ -55,7 +55,7 @@ class KirchhoffTracker:
         return self._shown
 
     def settle(self) -> bool:
-        """Fold the next second of what `settled` tells; False: it has all that it needs."""
+        """Fold the next second of what `settled` tells; False: it has all but the newest few."""
         return self._lag.settle()
 
     def settled(self) -> Self | None:

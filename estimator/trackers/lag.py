@@ -9,7 +9,7 @@ something is asked for, so many batches cost one pass.
 
 Where late readings go on coming, this would be the work of a whole lag each second. Then what is shown is
 folded in a hurry, and the sure chain follows behind them (decision 0052): a function of the log all the same.
-It follows once the picture has been told (decision 0111).
+It follows once the picture has been told (decision 0111); while nothing comes it goes ahead (decision 0114).
 """
 
 import math
@@ -28,7 +28,7 @@ from estimator.inertial.samples import AnyFolded, Samples, in_pieces
 from estimator.measurements import AnyReading
 from estimator.measurements.node import LateNode, Node
 from estimator.smoothing.images.flip_ambiguity import HURRIED
-from estimator.trackers.catch_up import CatchUp
+from estimator.trackers.catch_up import PROMPT_TICKS, CatchUp
 from estimator.trackers.chain import Chain, hurried
 from estimator.trackers.lag_record import LagRecord, Leap
 
@@ -60,7 +60,6 @@ class Lag:
         self._hurry = CatchUp()
         self._shown: Chain | None = None
         self._behind = False
-        self._settling: Chain | None = None
         self._notices: dict[int, list[Notice]] = {}
         self._given: dict[int, list[Notice]] = {}
         self._loose: list[Notice] = []
@@ -109,9 +108,9 @@ class Lag:
             known_t: when they came, by a clock that can be trusted (s): by no later epoch others are late.
         """
         self._follow()
-        self._settling = None
         missed: dict[str, AnyFolded] = {}
         room: tuple[int, int] | None = None
+        tick = 0
         together_t, together = math.nan, list[AnyFolded]()
         self.received += len(readings)
         in_order = [(r.until_t, r) for r in in_pieces(readings)]
@@ -121,6 +120,7 @@ class Lag:
             if until_t == together_t:
                 # What goes for the one before goes for all of its epoch.
                 together.append(reading)
+                self._hurry.hear(names_of(reading)[0], tick)
                 continue
             if self.newest_t is not None and until_t < self.newest_t - self.lag_s:
                 if isinstance(reading, Node):
@@ -130,6 +130,9 @@ class Lag:
                     self.too_late += 1
                     self.late[node] = self.late.get(node, 0) + 1
                     missed[node] = reading
+                    if self._ticks and self._hurry.foresee(node, tick_of(until_t), self._ticks[-1]):
+                        # What was folded since, with windows of all that is asked, would be folded anew.
+                        self._sure.roll_back(self._hurry.since + 1)
                 continue
             tick, now = tick_of(until_t), tick_of(self._go_on(reading, until_t, known_t))
             if room != (tick, now):
@@ -137,6 +140,7 @@ class Lag:
                 self._make_room(tick, now)
             together_t, together = until_t, self._readings[tick]
             together.append(reading)
+            self._hurry.hear(names_of(reading)[0], tick)
         for node, newest in missed.items():
             text = _too_late(self.late[node], self.lag_s) + self._why_late(newest.until_t)
             self._loose.append(Notice(code="too_late", t=newest.t, node=node, text=text))
@@ -198,7 +202,7 @@ class Lag:
         if hurry.hurrying and self._shown is None:
             self._extend(self._sure, hurry.since)
             ticks = self._after(hurry.since, hurry.until)
-            self._shown = hurried(self._sure.state, ticks, self._readings, self._notices)
+            self._shown = hurried(self._sure, ticks, self._readings, self._notices)
         self._behind = True
         if self._shown is None:
             self._follow()
@@ -219,19 +223,34 @@ class Lag:
         self._follow()
 
     def settle(self) -> bool:
-        """Fold the next tick of what `settled` tells; False: there is none, or no hurry."""
+        """Fold the next tick of what `settled` tells, but none that may change any second now.
+
+        The sure chain has it before its turn, unless something comes late.
+
+        Returns:
+            There is another one; False where there is no hurry.
+        """
         self._ask_all()
         if not self._hurry.hurrying:
             return False
-        chain = self._settling = self._settling or Chain(self._sure.checkpoints)
-        chain.extend(self._after(chain.folded)[:1], self._readings, {})
-        return bool(self._after(chain.folded))
+        ticks = self._unsettled(self._ticks[-1] - PROMPT_TICKS)
+        for tick in ticks[:1]:
+            self._sure.fold_ahead(tick, self._readings[tick])
+        return len(ticks) > 1
 
     def settled(self) -> FusionState | None:
         """What `state` would be if there were no hurry, which goes on; None: there is none."""
-        while self.settle():
-            pass
-        return None if self._settling is None else self._settling.state
+        self._ask_all()
+        if not self._hurry.hurrying:
+            return None
+        for tick in self._unsettled():
+            self._sure.fold_ahead(tick, self._readings[tick])
+        return self._sure.ahead[-1][1] if self._sure.ahead else self._sure.state
+
+    def _unsettled(self, until: int | None = None) -> list[int]:
+        """The ticks that the sure chain has not folded, before their turn or not, up to one of them."""
+        ahead = self._sure.ahead
+        return self._after(ahead[-1][0] if ahead else self._sure.folded, until)
 
     def _extend(self, chain: Chain, until: int | None = None) -> None:
         """Fold on to a tick, with it, or to the newest one."""

@@ -2,6 +2,7 @@
 
 import pytest
 
+from estimator.fusion.memory.encode import record_of
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
@@ -47,3 +48,20 @@ def test_the_window_is_solved_in_the_tick_that_finds_him() -> None:
     chain = Chain([(1, state)])
     chain.extend([2], readings, {})
     assert chain.state.refreshed_t > 1.0
+
+
+def test_what_was_folded_before_its_turn_is_not_folded_again_unless_something_comes_for_it() -> None:
+    readings = {k: [step(float(k), (1.0, 0.0, 0.0))] for k in range(2, 8)}
+    ahead, in_turn = (Chain([(1, walks(0.5))]) for _ in range(2))
+    for tick in (2, 3, 4, 5, 6):
+        ahead.fold_ahead(tick, readings[tick])
+    assert ahead.folded == 1
+    states = {tick: state for tick, state, _ in ahead.ahead}
+    ahead.extend([2, 3], readings, {})
+    assert ahead.state is states[3]
+    for chain in (ahead, in_turn):
+        chain.roll_back(5)
+        readings[5] = [step(5.0, (0.0, 1.0, 0.0))]
+        chain.extend(range(chain.folded + 1, 8), readings, {})
+    assert ahead.checkpoints[-4][1] is states[4]
+    assert record_of(ahead.state) == record_of(in_turn.state)
