@@ -23,6 +23,10 @@ from estimator.measurements.displacement import Displacement
 
 SOON = 0.75
 """A copy comes in less of its original's time; the next report that says the same by chance does not."""
+SOONER = 0.3
+"""The same of a unit that repeats itself."""
+COARSE_M = 0.05
+"""A unit that tells its bearer's steps, at no times of its own, in whole lengths of this repeats itself."""
 TIMELY = 0.08
 """How far off a unit's own time its reports come, in times between two of them."""
 FEW, EVEN = 10, 0.03
@@ -94,9 +98,11 @@ def is_copy(cadence: Cadence, told: Reported) -> bool:
     whole_of_it = told.heading_rad is not None and math.hypot(*told.delta_m) > COPY
     # Who walks evenly reports the same again, but at his unit's own time.
     waited_s = told.t - last.t
+    repeats = cadence.period_s is None and not cadence.stands and is_coarse(told)
     if says_the_same(last, told):
         usual_s = cadence.usual_s
-        if usual_s is not None and waited_s < SOON * usual_s:
+        soon = SOONER if repeats else SOON
+        if usual_s is not None and waited_s < soon * usual_s:
             own = len(cadence.spans_s) < SPANS_LEAST or is_timely(waited_s, cadence.middle_s)
             return not (own and left_some_out(usual_s / waited_s))
         period_s = cadence.period_s
@@ -106,7 +112,12 @@ def is_copy(cadence: Cadence, told: Reported) -> bool:
     # Hardly any says the same: what its unit's time is need not be asked.
     if not whole_of_it or not any(says_the_same(one, told) for one in cadence.recent[:-1]):
         return False
-    return not is_timely(waited_s, cadence.period_s or cadence.usual_s)
+    return not repeats and not is_timely(waited_s, cadence.period_s or cadence.usual_s)
+
+
+def is_coarse(told: Reported) -> bool:
+    """Whether a report is in whole lengths so long that its unit's steps agree by chance, again and again."""
+    return all(abs(along - COARSE_M * round(along / COARSE_M)) < COPY for along in told.delta_m)
 
 
 def is_timely(waited_s: float, between_s: float | None) -> bool:

@@ -157,6 +157,20 @@ def test_a_unit_that_rounds_what_it_reports_tells_no_copies(by_m: float, by_rad:
     assert last.position_m[0] == pytest.approx(sum(r.delta_m[0] for r in reports), rel=0.01)
 
 
+@pytest.mark.parametrize("seed", range(714, 717))
+def test_a_unit_that_tells_each_step_in_decimetres_loses_none(seed: int) -> None:
+    """No step comes at a time of its own, and most say what another one has said, heading and all."""
+    chance, t, steps = np.random.default_rng(seed), 0.0, Reports()
+    for _ in range(150):
+        t += float(chance.uniform(0.45, 0.75))
+        east_m, north_m = (round(float(m), 1) for m in chance.normal((0.75, 0.0), 0.05))
+        faces_rad = round(float(chance.normal(0.0, 0.05)), 1)
+        steps.append(Displacement(t=t, node="ff1", delta_m=(east_m, north_m, 0.0), heading_rad=faces_rad))
+    last = shown(steps)[-1]
+    assert last.position_m is not None
+    assert last.position_m[0] == pytest.approx(sum(r.delta_m[0] for r in steps), rel=0.01)
+
+
 def test_a_unit_that_steps_evenly_is_not_taken_for_two() -> None:
     steps = [
         Displacement(t=0.1 * k, node="ff1", delta_m=(0.1, 0.0, 0.0), heading_rad=0.0) for k in range(100)
