@@ -182,13 +182,14 @@ class IncidentFold:
     def since_t(self) -> float | None:
         """The moment since which what is known now has been shown, Unix seconds; None before the first."""
         second = self._second
-        if second is None or not self._live:
-            return second
-        return max(second - self.clock.ahead_s, self.received - SHOWN_WITHIN_S)
+        return None if second is None else self._since_t(second - self.clock.ahead_s, self.received)
 
     def since_t_of(self, row: RecordedFrame) -> float:
         """The same of what a row tells."""
-        return max(row.second, row.received - SHOWN_WITHIN_S) if self._live else row.second
+        return self._since_t(row.second, row.received)
+
+    def _since_t(self, second: int, received: float) -> float:
+        return max(second, received - SHOWN_WITHIN_S) if self._live else second
 
     @property
     def _second(self) -> int | None:

@@ -1,7 +1,9 @@
 """An incident that the estimator cannot fold stands still and says so; the others go on."""
 
 import asyncio
+from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import asynccontextmanager
 
 import pytest
 import sqlalchemy as sa
@@ -42,6 +44,15 @@ class Watch:
         self.pictures.append(message)
         self.published.set()
 
+    @asynccontextmanager
+    async def following(self) -> AsyncIterator[None]:
+        """Follow meanwhile, and end in order."""
+        following = asyncio.create_task(self.follower.run())
+        yield
+        self.follower.stop()
+        async with asyncio.timeout(30.0):
+            await following
+
     async def shown(self, seq: int) -> None:
         """Wait until an entry is in a picture."""
         async with asyncio.timeout(30.0):
@@ -57,10 +68,8 @@ def follow(
 
     async def go() -> None:
         watch = Watch(engine, store, incident, compute)
-        following = asyncio.create_task(watch.follower.run())
-        await watch.shown(seq)
-        watch.follower.stop()
-        await following
+        async with watch.following():
+            await watch.shown(seq)
 
     asyncio.run(go())
 

@@ -22,6 +22,11 @@ from tests.backend.tracking.fragile import Fragile
 from tests.backend.tracking.test_follower import Watch, status
 
 
+def endless(t: float) -> Status:
+    """Of what this tells the fragile tracker has always more to settle."""
+    return Status(t=t, node="endless", battery=0.5)
+
+
 def test_once_nothing_comes_any_more_what_was_folded_in_a_hurry_is_shown_without_one(
     engine: sa.Engine,
     store: IncidentStore,
@@ -43,13 +48,10 @@ def test_once_nothing_comes_any_more_what_was_folded_in_a_hurry_is_shown_without
 
     async def go() -> Watch:
         watch = Watch(engine, store, incident, compute)
-        following = asyncio.create_task(watch.follower.run())
-        async with asyncio.timeout(30.0):
+        async with watch.following(), asyncio.timeout(30.0):
             while not watch.pictures or decode(watch.pictures[-1].record) != fold.picture():
                 watch.published.clear()
                 await watch.published.wait()
-        watch.follower.stop()
-        await following
         return watch
 
     watch = asyncio.run(go())
@@ -68,20 +70,17 @@ def test_what_was_folded_in_a_hurry_keeps_nobody_waiting_while_it_is_folded_with
 ) -> None:
     monkeypatch.setattr(follower, "IDLE_S", 0.0)
     incident = store.create("endless", "recorded").id
-    write(incident, [[Status(t=1.0, node="endless", battery=0.5)]])
+    write(incident, [[endless(1.0)]])
 
     async def go() -> None:
         watch = Watch(engine, store, incident, compute)
-        following = asyncio.create_task(watch.follower.run())
-        await watch.shown(1)
-        await asyncio.sleep(0.1)
-        if more_comes:
-            write(incident, [[status(2.0)]])
-            watch.follower.hear(2)
-            await watch.shown(2)
-        watch.follower.stop()
-        async with asyncio.timeout(30.0):
-            await following
+        async with watch.following():
+            await watch.shown(1)
+            await asyncio.sleep(0.1)
+            if more_comes:
+                write(incident, [[status(2.0)]])
+                watch.follower.hear(2)
+                await watch.shown(2)
 
     asyncio.run(go())
 
@@ -107,10 +106,8 @@ def test_who_cannot_keep_up_shows_what_is_recorded_of_each_second_and_makes_no_o
 
     async def go() -> Watch:
         watch = Watch(engine, store, incident, compute)
-        following = asyncio.create_task(watch.follower.run())
-        await watch.shown(seconds)
-        watch.follower.stop()
-        await following
+        async with watch.following():
+            await watch.shown(seconds)
         return watch
 
     watch = asyncio.run(go())
@@ -140,22 +137,20 @@ def test_what_was_folded_in_a_hurry_is_folded_without_one_between_what_comes(
     monkeypatch.setattr(Fragile, "settle", noted)
     monkeypatch.setattr(follower, "IDLE_S", 60.0)
     incident = store.create("endless", "recorded").id
-    write(incident, [[Status(t=1.0, node="endless", battery=0.5)]])
+    write(incident, [[endless(1.0)]])
 
     async def go() -> float:
         watch = Watch(engine, store, incident, compute)
-        following = asyncio.create_task(watch.follower.run())
-        await watch.shown(1)
-        await asyncio.to_thread(steps.acquire)
-        write(incident, [[Status(t=2.0, node="endless", battery=0.5)]])
-        heard_at = time.monotonic()
-        watch.follower.hear(2)
-        await watch.shown(2)
-        until_then = len(settled)
-        for _ in range(until_then):
+        async with watch.following():
+            await watch.shown(1)
             await asyncio.to_thread(steps.acquire)
-        watch.follower.stop()
-        await following
+            write(incident, [[endless(2.0)]])
+            heard_at = time.monotonic()
+            watch.follower.hear(2)
+            await watch.shown(2)
+            until_then = len(settled)
+            for _ in range(until_then):
+                await asyncio.to_thread(steps.acquire)
         assert len(settled) > until_then
         return heard_at
 
