@@ -58,6 +58,12 @@ class DeviceUsed(FingersUsed):
         self.page.route_web_socket(re.compile(of), told)
         return let_through
 
+    def loses_what_it_sends(self, to: str) -> Callable[[], None]:
+        """No answer comes to what is sent to a path, nor word that none will come; what mends that."""
+        address = re.compile(to)
+        self.page.route(address, lambda _: None)
+        return lambda: self.page.unroute(address)
+
     def may_lose_the_sound(self) -> None:
         """From the next page on the system can take the sound away, as a call or a lock screen does."""
         self.page.add_init_script(

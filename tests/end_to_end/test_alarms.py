@@ -101,6 +101,20 @@ def test_a_mayday_of_a_unit_whose_clock_is_an_hour_ahead_is_heard_and_can_be_ans
     eventually(lambda: commander.banners == [])
 
 
+def test_an_answer_that_is_lost_on_its_way_keeps_nobody_from_giving_it_again(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = in_trouble(server, post, commander)
+    mends = commander.loses_what_it_sends("/telemetry")
+    commander.acknowledges()
+    eventually(lambda: "Not sent" in commander.alarm_words)
+    mends()
+    commander.acknowledges()
+    eventually(lambda: "acknowledged" in commander.banners[0])
+    assert "Not sent" not in commander.alarm_words
+    assert [one["state"] for one in spoken_by_command_post(post, incident)] == ["acknowledged"]
+
+
 def test_the_board_has_room_for_the_callsign_of_a_responder_in_trouble_and_stale(
     server: Server, post: Post, commander: Commander
 ) -> None:

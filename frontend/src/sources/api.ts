@@ -19,6 +19,11 @@ type Problem = components["schemas"]["Problem"];
 
 /** A look into another incident that takes longer than this is given up (ms). */
 const LOOK_WITHIN_MS = 5000;
+/**
+ * What somebody waits for and takes longer is given up, to be asked for again (ms): of a connection that is lost
+ * without a word a browser hears nothing for minutes, and meanwhile no other alarm could be answered.
+ */
+const ANSWER_WITHIN_MS = 10_000;
 
 /** Who speaks in batches sent from this screen. */
 const GATEWAY = "command-post";
@@ -30,10 +35,7 @@ async function answered<T>(
   try {
     answer = await request;
   } catch (cause) {
-    throw new RequestFailed(
-      0,
-      `The server cannot be reached (${cause instanceof Error ? cause.message : cause}).`,
-    );
+    throw new RequestFailed(0, whyUnanswered(cause));
   }
   if (!answer.response.ok) {
     const problem = answer.error;
@@ -43,9 +45,18 @@ async function answered<T>(
   return answer.data as T;
 }
 
+function whyUnanswered(cause: unknown): string {
+  if (cause instanceof DOMException && cause.name === "TimeoutError") return "The server does not answer.";
+  return `The server cannot be reached (${cause instanceof Error ? cause.message : cause}).`;
+}
+
+function within(ms: number): { signal: AbortSignal } {
+  return { signal: AbortSignal.timeout(ms) };
+}
+
 /** All incidents, the newest first, active ones before closed ones. */
 export async function incidents(): Promise<Incident[]> {
-  const list = await answered(client.GET("/api/v1/incidents"));
+  const list = await answered(client.GET("/api/v1/incidents", within(ANSWER_WITHIN_MS)));
   return list.sort(
     (a, b) => Number(a.state === "closed") - Number(b.state === "closed") || b.created - a.created,
   );
@@ -54,19 +65,18 @@ export async function incidents(): Promise<Incident[]> {
 /** The incidents that are not closed. Asked for again and again: a request that hangs must make room. */
 export async function activeIncidents(): Promise<Incident[]> {
   const params = { query: { state: "active" as const } };
-  const signal = AbortSignal.timeout(LOOK_WITHIN_MS);
-  return answered(client.GET("/api/v1/incidents", { params, signal }));
+  return answered(client.GET("/api/v1/incidents", { params, ...within(LOOK_WITHIN_MS) }));
 }
 
 /** What is known of an incident now. */
 export async function frame(id: string): Promise<Frame> {
-  const signal = AbortSignal.timeout(LOOK_WITHIN_MS);
-  const params = { path: { incident: id } };
-  return (await answered(client.GET("/api/v1/incidents/{incident}/frame", { params, signal }))) as Frame;
+  const asked = { params: { path: { incident: id } }, ...within(LOOK_WITHIN_MS) };
+  return (await answered(client.GET("/api/v1/incidents/{incident}/frame", asked))) as Frame;
 }
 
 export async function incident(id: string): Promise<Incident> {
-  return answered(client.GET("/api/v1/incidents/{incident}", { params: { path: { incident: id } } }));
+  const asked = { params: { path: { incident: id } }, ...within(ANSWER_WITHIN_MS) };
+  return answered(client.GET("/api/v1/incidents/{incident}", asked));
 }
 
 /**
@@ -126,6 +136,7 @@ export async function postAlarm(
     client.POST("/api/v1/incidents/{incident}/telemetry", {
       params: { path: { incident: id } },
       body: { gateway: GATEWAY, batch, readings: [said] },
+      ...within(ANSWER_WITHIN_MS),
     }),
   );
   const refused = answer.rejected[0];
@@ -134,7 +145,7 @@ export async function postAlarm(
 
 /** Trades an access token for a session cookie. */
 export async function signIn(token: string): Promise<void> {
-  await answered(client.POST("/api/v1/session", { body: { token } }));
+  await answered(client.POST("/api/v1/session", { body: { token }, ...within(ANSWER_WITHIN_MS) }));
 }
 
 /** A batch id that no other screen will choose. `crypto.randomUUID` exists only on secure origins. */
