@@ -142,6 +142,17 @@ def running(data: Path, *options: str) -> Iterator[Server]:
         server.stop()
 
 
+@contextlib.contextmanager
+def stopped(pid: int) -> Iterator[None]:
+    """A process that hangs for the length of a block."""
+    os.kill(pid, signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGCONT)
+
+
 class Post:
     """What a test does as a command post or gateway: the HTTP API in domain words.
 

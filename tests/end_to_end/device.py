@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable
 
-from playwright.sync_api import WebSocketRoute
+from playwright.sync_api import Route, WebSocketRoute
 
 from tests.end_to_end.fingers import FingersUsed
 
@@ -63,6 +63,27 @@ class DeviceUsed(FingersUsed):
         address = re.compile(to)
         self.page.route(address, lambda _: None)
         return lambda: self.page.unroute(address)
+
+    def holds_what_it_sends(self, to: str) -> Callable[[], None]:
+        """What is sent to a path waits; what lets it through, and all that follows."""
+        address, held = re.compile(to), list[Route]()
+        free = False
+
+        def hold(route: Route) -> None:
+            if free:
+                route.continue_()
+            else:
+                held.append(route)
+
+        def let_through() -> None:
+            nonlocal free
+            free = True
+            for route in held:
+                route.continue_()
+            self.page.unroute(address, hold)
+
+        self.page.route(address, hold)
+        return let_through
 
     def may_lose_the_sound(self) -> None:
         """From the next page on the system can take the sound away, as a call or a lock screen does."""

@@ -9,7 +9,7 @@ import pytest
 
 from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import Reading, alarm, base, heard, responder
-from tests.running import Post, Server, eventually
+from tests.running import Post, Server, eventually, stopped
 
 # A call elsewhere, too, takes the help sheet away.
 pytestmark = pytest.mark.usefixtures("nothing_left_open")
@@ -113,6 +113,26 @@ def test_an_answer_that_is_lost_on_its_way_keeps_nobody_from_giving_it_again(
     eventually(lambda: "acknowledged" in commander.banners[0])
     assert "Not sent" not in commander.alarm_words
     assert [one["state"] for one in spoken_by_command_post(post, incident)] == ["acknowledged"]
+
+
+def test_an_answer_that_is_in_the_log_is_not_taken_back_by_pictures_that_do_not_have_it_yet(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    incident = in_trouble(server, post, commander)
+    (worker,) = server.worker_pids()
+    with stopped(worker):
+        commander.acknowledges()
+        eventually(lambda: "acknowledged" in commander.banners[0])
+        commander.page.wait_for_timeout(2500)
+        assert "acknowledged" in commander.banners[0]
+        commander.clears()
+        eventually(lambda: commander.banners == [])
+        commander.page.wait_for_timeout(2500)
+        assert commander.banners == []
+    heard(post, incident, alarm(time.time(), "e7-1", kind="pass"))
+    eventually(lambda: commander.banners)
+    assert "PASS E7-1" in commander.banners[0]
+    assert "MAYDAY" not in commander.alarm_words
 
 
 def test_the_board_has_room_for_the_callsign_of_a_responder_in_trouble_and_stale(

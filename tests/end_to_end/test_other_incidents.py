@@ -7,6 +7,7 @@ import pytest
 
 from tests.end_to_end.commander import Commander
 from tests.end_to_end.scene import alarm, base, heard, responder, two_on_two_storeys
+from tests.end_to_end.test_alarms import spoken_by_command_post
 from tests.running import Post, Server, eventually
 
 pytestmark = pytest.mark.usefixtures("nothing_left_open")
@@ -83,6 +84,21 @@ def test_who_is_called_away_from_the_past_comes_back_to_the_same_moment_and_plac
     eventually(lambda: commander.colour("#56b4e9").count > 100)
     again = commander.settled_mark("#56b4e9")
     assert again.from_middle == pytest.approx(place.from_middle, abs=2)
+
+
+def test_who_goes_elsewhere_before_both_calls_of_somebody_are_answered_answers_both_where_they_are(
+    server: Server, post: Post, commander: Commander
+) -> None:
+    here, there = mill(post), mill(post, "Dock")
+    heard(post, here, alarm(time.time(), "w1"), alarm(time.time(), "w1", kind="pass"))
+    commander.opens(server.url, here)
+    let_through = commander.holds_what_it_sends("/telemetry")
+    commander.acknowledges()
+    commander.chooses_incident("Dock")
+    eventually(lambda: commander.incident == "Dock" and commander.banners == [])
+    let_through()
+    eventually(lambda: [one["state"] for one in spoken_by_command_post(post, here)] == 2 * ["acknowledged"])
+    assert spoken_by_command_post(post, there) == []
 
 
 def test_a_call_is_seen_in_an_incident_that_began_after_the_screen_was_opened(

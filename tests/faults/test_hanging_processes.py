@@ -1,6 +1,5 @@
 """Processes hang without ending: they are found out by their silence, and nothing acknowledged is lost."""
 
-import contextlib
 import os
 import signal
 import time
@@ -10,18 +9,7 @@ from pathlib import Path
 import httpx2
 import pytest
 
-from tests.running import READY_WITHIN_S, Post, Server, eventually, running
-
-
-@contextlib.contextmanager
-def stopped(pid: int) -> Iterator[None]:
-    """A process that hangs for the length of a block."""
-    os.kill(pid, signal.SIGSTOP)
-    try:
-        yield
-    finally:
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(pid, signal.SIGCONT)
+from tests.running import READY_WITHIN_S, Post, Server, eventually, running, stopped
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,13 @@
 import { alarmKey } from "../domain/alarms/alarms";
 import type { FrameAlarm } from "../domain/types";
 
-export type Post = (batch: string, alarm: FrameAlarm, state: FrameAlarm["state"]) => Promise<void>;
+/** Sends one to an incident, under a name; gives the entry of the log in which it is. */
+export type Post = (
+  incident: string,
+  batch: string,
+  alarm: FrameAlarm,
+  state: FrameAlarm["state"],
+) => Promise<number>;
 
 export class Answers {
   /** One is on its way. */
@@ -17,20 +23,20 @@ export class Answers {
     private readonly freshName: () => string,
   ) {}
 
-  /** Send one; whether it has arrived. */
-  async say(alarm: FrameAlarm, state: FrameAlarm["state"]): Promise<boolean> {
+  /** Send one to an incident; the entry of the log in which it is, or null: it may not have arrived. */
+  async say(incident: string, alarm: FrameAlarm, state: FrameAlarm["state"]): Promise<number | null> {
     this.busy = true;
-    const word = `${alarmKey(alarm)} ${alarm.t} ${state}`;
+    const word = `${incident} ${alarmKey(alarm)} ${alarm.t} ${state}`;
     const batch = this.unsent.get(word) ?? this.freshName();
     this.unsent.set(word, batch);
     try {
-      await this.post(batch, alarm, state);
+      const seq = await this.post(incident, batch, alarm, state);
       this.unsent.delete(word);
       this.refused = null;
-      return true;
+      return seq;
     } catch (cause) {
       this.refused = `Not sent: ${cause instanceof Error ? cause.message : cause} Press again.`;
-      return false;
+      return null;
     } finally {
       this.busy = false;
     }

@@ -1,6 +1,6 @@
 /** What the whole screen knows: the incident, its pictures now and then, and what is chosen. */
 
-import { alarmByNode, inOrder, type StandingAlarms, standingAlarms } from "../domain/alarms/alarms";
+import { alarmByNode, inOrder } from "../domain/alarms/alarms";
 import { blindElsewhere, callsElsewhere } from "../domain/alarms/elsewhere";
 import { knownNow } from "../domain/fixes/known-now";
 import type { LevelChoice } from "../domain/fixes/levels";
@@ -25,6 +25,7 @@ import { Elsewhere } from "./elsewhere.svelte";
 import { Feed } from "./feed.svelte";
 import { Marks } from "./marks.svelte";
 import { Replay, type ReplayOwner } from "./replay.svelte";
+import { Standing } from "./standing.svelte";
 import { TracksAround } from "./tracks-around.svelte";
 
 const TICK_MS = 250;
@@ -37,7 +38,7 @@ const COMPARED_DECIMALS = 3;
 export class Screen implements DoorOwner, ReplayOwner {
   incident = $state.raw<Incident | null>(null);
   /** Alarms of the live incident, also while its past is looked at. */
-  standing = $state.raw<StandingAlarms>(new Map());
+  readonly standing = new Standing();
   level = $state<LevelChoice>("all");
   selected = $state<string | null>(null);
   theme = $state<Theme>(firstTheme());
@@ -147,7 +148,7 @@ export class Screen implements DoorOwner, ReplayOwner {
     this.presence === "unheard" ? whileUnheard(limitsOf(this.told)) : limitsOf(this.told),
   );
   readonly crews = $derived(crewMarks([...(this.picture?.nodes.values() ?? [])].map(({ state }) => state)));
-  readonly alarmList = $derived(inOrder(this.standing));
+  readonly alarmList = $derived(inOrder(this.standing.list));
   /** Whose air is low, as it is known now. */
   readonly lowAir = $derived(
     lowOnAir(
@@ -210,7 +211,7 @@ export class Screen implements DoorOwner, ReplayOwner {
     if (this.incident !== null) this.elsewhere.forget(this.incident.id);
     this.goLive();
     this.incident = incident;
-    this.standing = new Map();
+    this.standing.clear();
     this.marks.clear();
     this.marks.told(incident);
     this.trackList = [];
@@ -270,7 +271,7 @@ export class Screen implements DoorOwner, ReplayOwner {
     }
     if (message.nodes.length > 0) this.earliestT = Math.min(this.earliestT, message.clock_t);
     this.foldedSeq = message.seq;
-    this.standing = standingAlarms(message.alarms);
+    this.standing.heard(message);
     this.marks.seen(message);
     for (const { node, role, t, position_m } of message.nodes) {
       if (isMoving(role) && position_m != null) this.walked.add(node, t, position_m);

@@ -121,7 +121,7 @@ export async function advice(id: string, node: string, signal: AbortSignal): Pro
 }
 
 /**
- * Puts the commander's word on an alarm into the log.
+ * Puts the commander's word on an alarm into the log, and gives the entry in which it is.
  * `batch` makes it safe to send again.
  */
 export async function postAlarm(
@@ -130,7 +130,7 @@ export async function postAlarm(
   t: number,
   alarm: FrameAlarm,
   state: FrameAlarm["state"],
-): Promise<void> {
+): Promise<number> {
   const said = { kind: "alarm" as const, t, node: alarm.node, alarm: alarm.alarm, state };
   const answer = await answered(
     client.POST("/api/v1/incidents/{incident}/telemetry", {
@@ -141,6 +141,7 @@ export async function postAlarm(
   );
   const refused = answer.rejected[0];
   if (refused) throw new RequestFailed(422, refused.message);
+  return answer.seq;
 }
 
 /** Trades an access token for a session cookie. */

@@ -27,7 +27,7 @@ export function standingAlarms(listed: readonly FrameAlarm[]): StandingAlarms {
   );
 }
 
-/** The alarms that stand after a person's word on one of them has reached the log. */
+/** The alarms that stand after a person's word on one of them has reached the log; of a later call it says nothing. */
 export function answered(
   before: StandingAlarms,
   alarm: FrameAlarm,
@@ -35,7 +35,7 @@ export function answered(
 ): StandingAlarms {
   const after = new Map(before);
   const known = after.get(alarmKey(alarm));
-  if (known === undefined) return before;
+  if (known === undefined || known.alarm.t !== alarm.t) return before;
   const acknowledged = known.acknowledged || state === "acknowledged";
   const cleared = known.cleared || state === "cleared";
   if (acknowledged && cleared) after.delete(alarmKey(alarm));
