@@ -55,20 +55,23 @@ def append_group(engine: sa.Engine, group: Sequence[NewBatch]) -> list[Outcome]:
     """
     try:
         with writing(engine) as connection:
-            return _append(connection, group, None)
+            return _append(connection, group, ask=False)
     except _AskFirst:
         # Repeats are rare: asking for them beforehand would cost every group what now only these cost.
         with writing(engine) as connection:
-            return _append(connection, group, _known(connection, group))
+            return _append(connection, group, ask=True)
 
 
-def _append(
-    connection: sa.Connection, group: Sequence[NewBatch], repeats: dict[Key, Appended] | None
-) -> list[Outcome]:
-    """Append those batches that are not among the `repeats`; None if these are not known.
+def _append(connection: sa.Connection, group: Sequence[NewBatch], *, ask: bool) -> list[Outcome]:
+    """Append those batches that are not in the log yet.
+
+    Args:
+        connection: in a transaction that writes.
+        group: batches of any incidents.
+        ask: which of them are in the log; else none is taken to be.
 
     Raises:
-        _AskFirst: they have to be known.
+        _AskFirst: one may be, and it was not asked.
     """
     dialect = connection.dialect.name
     ids = sorted({batch.incident for batch in group})
@@ -78,7 +81,8 @@ def _append(
             lock_incidents(dialect, len(ids)), tuple(ids)
         )
     }
-    known = dict(repeats or {})
+    # Under the lock: another process may write the same batches to the same database.
+    known = _known(connection, group) if ask else {}
     newest: dict[str, int] = {}
     outcomes: list[Outcome] = []
     values: list[object] = []
@@ -93,7 +97,7 @@ def _append(
             continue
         state, last_seq = heads[incident]
         if state != "active":
-            if repeats is None:  # a repeat is answered even where the incident has been closed since
+            if not ask:  # a repeat is answered even where the incident has been closed since
                 raise _AskFirst
             outcomes.append(_closed(incident))
             continue

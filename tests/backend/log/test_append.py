@@ -102,6 +102,27 @@ def test_threads_that_append_at_once_leave_no_gap(engine: sa.Engine, url: str, b
     assert len({(one.gateway, one.batch) for one in logged}) == len(logged)
 
 
+def test_what_another_writer_has_after_a_repeat_was_met_is_a_repeat_too(
+    engine: sa.Engine, url: str, batch: MakeBatch
+) -> None:
+    append_group(engine, [batch("old")])
+    other = make_engine(url)
+    writes = threading.Thread(target=append_group, args=(other, [batch("new")]))
+
+    @sa.event.listens_for(engine, "after_cursor_execute")
+    def at_once(_connection: object, _cursor: object, statement: str, *_: object) -> None:
+        if statement.startswith("WITH asked"):  # it is known by now what had been there
+            writes.start()
+            writes.join(1.0)
+
+    answers = append_group(engine, [batch("old"), batch("new"), batch("third")])
+    writes.join()
+    other.dispose()
+    logged = list(SqlLogReader(engine).batches(batch.incident))
+    assert seqs(answers) == [1, 2, 3]
+    assert [one.batch for one in logged] == ["old", "new", "third"]
+
+
 WRITER = """
 import json, sys
 from backend.log.append import append_group
