@@ -30,6 +30,12 @@ STANDARD_INPUT = Path("-")
 GROUP_BATCHES = 256
 GROUP_BYTES = 8 * 1024 * 1024
 
+NOT_FINISHED = " (import not finished)"
+"""After the name of an incident until its last line is stored: what was broken off is no whole record."""
+
+NAME_LETTERS = 200 - len(NOT_FINISHED)
+"""So many of its name fit before that."""
+
 Progress = Callable[[int, int], None]
 """Called with the lines written so far and all lines of the file."""
 
@@ -76,7 +82,8 @@ def import_log(
 
     The whole file is read and understood before anything is stored. A line without `received` is taken to
     have come when it was sent, or at its newest reading; `seq` counts the lines anew. Readings are judged as
-    ingest judges them; those that the line itself lists as rejected stay so.
+    ingest judges them; those that the line itself lists as rejected stay so. The incident gets its name with
+    the last line: until then, and for ever where the import is broken off, `NOT_FINISHED` stands after it.
 
     What is given here goes before what the file says of its incident, at all times; what neither says has its
     default. What was set under way is set after the same line.
@@ -114,8 +121,9 @@ def import_log(
         engine = make_engine(url)
         try:
             store = IncidentStore(engine)
+            unfinished = known.name[:NAME_LETTERS] + NOT_FINISHED
             incident = store.create(
-                known.name, known.clock, known.origin, known.levels, known.settings, known.created
+                unfinished, known.clock, known.origin, known.levels, known.settings, known.created
             ).id
             imported, written, coming = Imported(incident=incident), 0, list(known.changes)
             for group in _groups(batches_in(file, incident, known.clock, said), known.changes):
@@ -127,8 +135,8 @@ def import_log(
                     progress(written, total)
             for change in coming:
                 _set(store, incident, change)
-            if known.closed is not None:
-                store.change(incident, {"state": "closed", "closed": known.closed})
+            closed = {} if known.closed is None else {"state": "closed", "closed": known.closed}
+            store.change(incident, {"name": known.name} | closed)
             return imported
         finally:
             engine.dispose()

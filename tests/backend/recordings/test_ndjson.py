@@ -155,6 +155,26 @@ def test_a_long_log_is_written_in_parts_and_says_how_far_it_is(database_url: str
     assert sum(1 for _ in export_log(database_url, imported.incident)) == 600
 
 
+@pytest.mark.parametrize("name", ["Long", "L" * 200])
+def test_of_an_import_that_is_broken_off_the_name_says_so(
+    database_url: str, tmp_path: Path, name: str
+) -> None:
+    path = tmp_path / "long.ndjson"
+    path.write_bytes(b"".join(b'{"gateway":"g","batch":"%d","readings":[]}\n' % n for n in range(300)))
+
+    def break_off(*_: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        import_log(database_url, name, path, progress=break_off)
+    whole = import_log(database_url, name, path)
+    engine = make_engine(database_url)
+    broken, found = IncidentStore(engine).all()
+    engine.dispose()
+    assert broken.name == f"{name[:178]} (import not finished)"
+    assert (found.id, found.name, len(found.stretches)) == (whole.incident, name, 1)
+
+
 def test_an_incident_that_is_closed_while_it_is_imported_ends_the_import(
     database_url: str, tmp_path: Path
 ) -> None:
