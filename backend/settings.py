@@ -1,6 +1,7 @@
 """What a deployment may set, each with its default and its reason."""
 
 from pathlib import Path
+from urllib.parse import quote
 
 import msgspec
 
@@ -67,7 +68,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True):
     def database_url(self) -> str:
         """The SQLAlchemy URL of the log."""
         if self.database is None:
-            return f"sqlite:///{self.data.resolve() / 'firethread.db'}"
+            return f"sqlite:///{quote(str(self.data.resolve() / 'firethread.db'))}"
         # Engineers write the scheme of libpq; the driver is ours to choose.
         for scheme in ("postgresql://", "postgres://"):
             if self.database.startswith(scheme):
