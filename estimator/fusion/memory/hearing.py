@@ -1,8 +1,13 @@
-"""Who has been hearing whom: where a radio falls silent or is heard again, somebody crosses its reach."""
+"""Who has been hearing whom: where a radio falls silent or is heard again, somebody crosses its reach.
 
-from collections.abc import Mapping
+But a unit may tell only the strongest few of all that it hears: then a radio falls silent because another one
+has become louder, and nothing is known of its reach (decision 0117).
+"""
+
+from dataclasses import dataclass, field
 
 import msgspec
+from msgspec.structs import replace
 
 from estimator.fusion.learned.reach import MOST_SILENT
 from estimator.measurements.base import PairReading
@@ -31,17 +36,39 @@ class HeardRadio(msgspec.Struct, frozen=True, array_like=True, gc=False):
     silent: int
 
 
+@dataclass
+class Heard:
+    """Whom a radio hears in a second.
+
+    Attributes:
+        radios: whom, and when last (s).
+        at_once: how many one scan of its tells of, at most.
+    """
+
+    radios: dict[str, float] = field(default_factory=dict)
+    at_once: int = 0
+
+    @property
+    def told(self) -> int:
+        """How many it tells of at once; where each power has an epoch of its own, in the whole second."""
+        return self.at_once if self.at_once > 1 else len(self.radios)
+
+
 class Listener(msgspec.Struct, frozen=True, array_like=True):
     """What a radio has been hearing; an occasion is a second in which it hears anything.
 
     Attributes:
         occasions: epochs of the last ones that are over, oldest first (s).
+        told: how many radios it told of at once on each of these.
         newest: whom it hears at the newest one, and when (s): the rest of it may still be under way.
+        newest_told: how many it tells of at once on that.
         radios: those that it had heard until then.
     """
 
     occasions: tuple[float, ...] = ()
+    told: tuple[int, ...] = ()
     newest: dict[str, float] = {}
+    newest_told: int = 0
     radios: dict[str, HeardRadio] = {}
 
     def without(self, radio: str) -> "Listener":
@@ -50,7 +77,7 @@ class Listener(msgspec.Struct, frozen=True, array_like=True):
             return self
         newest = {name: t for name, t in self.newest.items() if name != radio}
         radios = {name: heard for name, heard in self.radios.items() if name != radio}
-        return Listener(self.occasions, newest, radios)
+        return replace(self, newest=newest, radios=radios)
 
 
 class Occasion(msgspec.Struct, frozen=True):
@@ -69,22 +96,24 @@ class Occasion(msgspec.Struct, frozen=True):
     lost: int
 
 
-def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int) -> Occasion:
+def listen(name: str, listener: Listener, now: Heard, silent: int) -> Occasion:
     """Close the newest occasion of a listener, and begin the next one.
 
     Who is heard again is so at once. Who is not may still come, in a later post, until the occasion is over.
+    Where another radio is told of in the place of one, no reach was crossed.
 
     Args:
         name: of the listener.
         listener: what it has been hearing.
-        now: whom it hears at the next one, and when (s).
+        now: whom it hears at the next one.
         silent: occasions in a row at which a radio in reach is hardly missed by chance: where it is not heard
             at the next one either, it is out of reach.
     """
     before, radios = listener.newest, dict(listener.radios)
     if not before:
-        return Occasion(Listener((), dict(now), radios), [], 0, 0)
-    occasions = (*listener.occasions, max(before.values()))[-MOST_SILENT:]
+        return Occasion(Listener((), (), now.radios, now.told, radios), [], 0, 0)
+    occasions = (*listener.occasions, max(before.values()))[-MOST_SILENT - 1 :]
+    told = (*listener.told, listener.newest_told)[-MOST_SILENT - 1 :]
     crossings: list[Crossing] = []
     heard = lost = 0
 
@@ -102,19 +131,20 @@ def listen(name: str, listener: Listener, now: Mapping[str, float], silent: int)
     for other, known in listener.radios.items():
         if known.silent >= silent:
             # Of the many that are out of reach nothing changes until they are heard again.
-            if other in now and other not in before:
-                crossed(occasions[-1], now[other], other)
+            if other in now.radios and other not in before and now.told > told[-1]:
+                crossed(occasions[-1], now.radios[other], other)
             continue
         if other in before:
             continue
-        again = other in now
+        again = other in now.radios
         missed = known.silent + 1
         # Until it is thought to be out of reach, what is not heard of it counts as lost.
         if missed < silent or again:
             lost += 1
         else:
             lost -= silent - 1
-            if known.heard >= STREAK and len(occasions) >= silent:
+            replaced = len(occasions) <= silent or told[-silent] >= told[-silent - 1]
+            if known.heard >= STREAK and not replaced:
                 crossed(known.t, occasions[-silent], other)
         radios[other] = HeardRadio(known.t, known.heard, 0 if missed == silent and again else missed)
-    return Occasion(Listener(occasions, dict(now), radios), crossings, heard, lost)
+    return Occasion(Listener(occasions, told, now.radios, now.told, radios), crossings, heard, lost)

@@ -11,7 +11,7 @@ from estimator.fusion.entering.technologies import REACH, path_loss_variable
 from estimator.fusion.learned import reach
 from estimator.fusion.learned.link_correlation import KEPT, SAME_PLACE
 from estimator.fusion.learned.noise import LearnedNoise
-from estimator.fusion.memory.hearing import Crossing, Listener, listen
+from estimator.fusion.memory.hearing import Crossing, Heard, Listener, listen
 from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.rows.gauss_newton import GOOD, PREDICTED, RESIDUAL
@@ -36,16 +36,19 @@ def hear(state: FusionState, readings: Sequence[Rssi]) -> list[Crossing]:
     """
     if not readings:
         return []
-    heard: dict[int, dict[str, dict[str, float]]] = {}
-    listening, now = dict[str, dict[str, float]](), dict[str, float]()
-    before_t, before = math.nan, ""
+    heard: dict[int, dict[str, Heard]] = {}
+    listening, now = dict[str, Heard](), Heard()
+    before_t, before, scan = math.nan, "", 0
     for reading in readings:
         t, name = reading.t, reading.a
         if t != before_t:
             listening, before_t, before = heard.setdefault(tick_of(t), {}), t, ""
         if name != before:
-            now, before = listening.setdefault(name, {}), name
-        now[reading.b] = t
+            now, before = listening.setdefault(name, Heard()), name
+            scan = 0
+        now.radios[reading.b] = t
+        scan += 1
+        now.at_once = max(now.at_once, scan)
     crossings: list[Crossing] = []
     silent, packets, lost = state.reach.silent, 0, 0
     for listening in heard.values():

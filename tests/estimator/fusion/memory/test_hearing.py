@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from estimator.fusion.memory.hearing import Crossing, Listener, listen
+from estimator.fusion.memory.hearing import Crossing, Heard, Listener, listen
 
 
 def heard(seconds: Sequence[str], silent: int = 1, each_s: float = 1.0) -> tuple[list[Crossing], int, int]:
@@ -14,7 +14,8 @@ def heard(seconds: Sequence[str], silent: int = 1, each_s: float = 1.0) -> tuple
     listener, crossings, packets, lost = Listener(), [], 0, 0
     for second, names in enumerate(seconds):
         if names != " ":
-            told = listen("ff", listener, dict.fromkeys(names, second * each_s), silent)
+            now = Heard(dict.fromkeys(names, second * each_s), len(names))
+            told = listen("ff", listener, now, silent)
             listener, packets, lost = told.listener, packets + told.heard, lost + told.lost
             crossings += told.crossings
     return crossings, packets, lost
@@ -71,6 +72,25 @@ def test_who_is_not_listened_to_for_long_has_crossed_nobody_knows_when() -> None
 def test_a_radio_that_was_never_heard_or_hardly_ever_falls_silent_for_nobody() -> None:
     assert heard(["a", "a", "a", "ab", "a", "a"])[0] == []
     assert heard(["ab", "ab", "a", "a", "a"])[0] == []
+
+
+@pytest.mark.parametrize("silent", [1, 2])
+def test_a_radio_whose_place_another_one_takes_has_left_no_reach(silent: int) -> None:
+    """A unit that tells the strongest three hears the third one still when a fourth has become louder."""
+    assert heard([*["abc"] * 4, *["abd"] * 4, *["abc"] * 4], silent)[0] == []
+
+
+def test_beside_one_that_takes_another_ones_place_a_reach_is_left_where_fewer_are_heard() -> None:
+    assert heard(["abc", "abc", "abc", "ad", "ad"])[0] == [
+        Crossing(t=2.5, a="ff", b="b"),
+        Crossing(t=2.5, a="ff", b="c"),
+    ]
+
+
+def test_as_many_are_told_at_once_as_one_scan_tells_or_the_whole_second_where_each_comes_by_itself() -> None:
+    radios = {"a": 0.2, "b": 0.4, "c": 0.8}
+    assert Heard(radios, at_once=2).told == 2
+    assert Heard(radios, at_once=1).told == 3
 
 
 @given(

@@ -12,6 +12,7 @@ from estimator.fusion.learned.reach import EXPONENT
 from estimator.fusion.memory.state import FusionState
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
+from estimator.measurements.node import Node
 from estimator.measurements.rssi import Rssi
 from estimator.simulate import Scenario, scenario
 from estimator.trackers.batch import BatchSmoother
@@ -76,6 +77,25 @@ def test_where_packets_are_lost_silence_tells_nothing(name: str) -> None:
 def test_who_has_no_unit_crosses_no_reach() -> None:
     """Where he was between two seconds nobody knows."""
     assert crossings(folded([r for r in readings() if not isinstance(r, Displacement)])) == []
+
+
+@pytest.mark.parametrize("sweeps", [1, 4])
+def test_of_a_unit_that_tells_the_strongest_few_no_silence_is_a_reach(sweeps: int) -> None:
+    """Along a row of radios, of which it tells three: which these are may change within a second."""
+    told: list[AnyReading] = [Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0))]
+    places_m = {f"b{k}": (10.0 * k, 2.0, 0.0) for k in range(16)}
+    told += [Node(t=0.0, node=name, role="breadcrumb", position_m=at) for name, at in places_m.items()]
+    for number in range(1, 120 * sweeps + 1):
+        t = number / sweeps
+        nearest = sorted(range(16), key=lambda k: abs(10.0 * k - 1.3 * t))[:3]
+        for k in nearest:
+            apart_m = float(np.hypot(10.0 * k - 1.3 * t, 2.0))
+            told.append(Rssi(t=t, a="ff1", b=f"b{k}", dbm=-42.0 - 22.0 * float(np.log10(apart_m))))
+        if number % sweeps == 0:
+            told.append(Displacement(t=t, node="ff1", delta_m=(1.3, 0.0, 0.0)))
+    state = folded(told)
+    assert state.reach.silent is not None
+    assert crossings(state) == []
 
 
 def test_a_second_that_comes_in_two_halves_gives_what_it_gives_at_once() -> None:
