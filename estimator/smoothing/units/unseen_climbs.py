@@ -27,8 +27,9 @@ OFF_PLANE_M = 0.3
 CLEAR = 10.0
 """Log odds from which on somebody has climbed. A kick is found by as much."""
 SOON, HOPELESS = 3, 10.0
-"""Steps after which heights are given up whose readings are this much less likely with each of them. Those
-whose powers are as unlikely with all else held are not solved at all."""
+"""Steps after which heights are given up whose readings are this much less likely with each of them: ranges
+are so sharp that some go on to a storey from there. Of who has powers alone they tell by then whether anybody
+is likelier with heights at all. Whose powers are as unlikely with all else held is not solved at all."""
 HINT = 5.0
 """Readings that cost so much more than they did hint at heights: it was 18 to 22 where somebody had climbed.
 On the level they may as well, by chance: then it is asked in vain."""
@@ -70,7 +71,8 @@ def find_unseen_climb(
     if not level:
         return problem, solved
     state.level_cost = solved.cost / max(len(problem.rows.slab), 1)
-    if _hopeless(problem, solved, level):
+    by_powers = _by_powers(problem, level)
+    if by_powers and _hopeless(problem, solved, level):
         return problem, solved
     x = solved.x.copy()
     for i in level:
@@ -81,7 +83,7 @@ def find_unseen_climb(
     if not found.rests:
         before = marginal_cost(problem, solved)
         after = marginal_cost(trial, found)
-        if (after.each[level] > before.each[level] + HOPELESS).all():
+        if (after.each[level] > before.each[level] + (0.0 if by_powers else HOPELESS)).all():
             return problem, solved
         found = trial.solve(found.x, resting=resting)
     rose = [i for i in level if np.ptp(_heights(problem, found.x, i)) > CLIMBED_M]
@@ -120,16 +122,22 @@ def _trial(
     return trial
 
 
+def _by_powers(problem: Problem, level: Sequence[int]) -> bool:
+    """Whether no range tells where any of some walks, by index, is."""
+    layout, rows = problem.layout, problem.rows
+    own = rows.of([layout.walks[i].number for i in level])[: len(rows.pairs)]
+    return not (own & (rows.pairs[:, 1] == RANGE)).any()
+
+
 def _hopeless(problem: Problem, solved: Solution, level: Sequence[int]) -> bool:
     """Whether powers of each of some walks, by index, speak clearly against heights, all else held.
 
     Who is ranged is asked with all else free: ranges are so sharp that whom they have dragged aside no height
     brings back by itself.
     """
-    layout, rows = problem.layout, problem.rows
+    layout = problem.layout
     walks = [layout.walks[i] for i in level]
-    ranged = rows.of([walk.number for walk in walks])[: len(rows.pairs)] & (rows.pairs[:, 1] == RANGE)
-    if ranged.any() or any(walk.first == walk.last for walk in walks):
+    if any(walk.first == walk.last for walk in walks):
         return False
     climbs_m2 = {i: _climbing_m2(layout, i) for i in level}
     return min(height_costs(problem, solved, climbs_m2, OFF_PLANE_M).values()) > HOPELESS

@@ -1,5 +1,6 @@
 """What readings cost with heights and all else held: against all heights looked for one by one."""
 
+import dataclasses
 import math
 from collections.abc import Callable
 
@@ -15,8 +16,10 @@ from estimator.measurements import AnyReading
 from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
 from estimator.smoothing.problem.newton import RESTING, Problem
+from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.units import held_heights, unseen_climbs
 from estimator.smoothing.units.held_heights import UP, height_costs
+from estimator.smoothing.units.marginal_heights import MarginalCost
 from estimator.smoothing.units.unseen_climbs import OFF_PLANE_M, find_unseen_climb
 from tests.estimator.smoothing.units.test_marginal_heights import ANCHORS_M, CLIMB_M2, both, crew
 from tests.estimator.smoothing.windows import difference, fused, problem_of
@@ -113,3 +116,36 @@ def test_who_is_ranged_is_asked_with_all_else_free(monkeypatch: pytest.MonkeyPat
 
         find_unseen_climb(problem, flat, build, RESTING)
         assert bool(built) == bool((problem.rows.pairs[:, 1] == RANGE).any())
+
+
+@pytest.mark.parametrize("kind", [power, distance])
+def test_of_powers_alone_three_steps_tell_whether_anybody_is_likelier_with_heights(
+    kind: Callable[[Rssi, float], AnyReading], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of ranges too where they speak more clearly: from there some have gone on to a storey."""
+    monkeypatch.setattr(unseen_climbs, "height_costs", lambda *_: {0: 0.0, 1: 0.0})
+    problem = climbed(kind)
+    flat = problem.solve(problem.layout.start())
+    restless = dataclasses.replace(flat, rests=False)
+
+    def solved(more: float) -> int:
+        """How often heights are solved for with which, after three steps, one of two costs so much more."""
+        costs = iter([MarginalCost(0.0, np.zeros(2)), MarginalCost(0.0, np.array([99.0, more]))])
+        monkeypatch.setattr(unseen_climbs, "marginal_cost", lambda *_: next(costs))
+        asked: list[Array] = []
+
+        def solve(x: Array, **_: float) -> Solution:
+            asked.append(x)
+            return restless
+
+        def build(other: FusionState) -> Problem:
+            trial = problem_of(other)
+            monkeypatch.setattr(trial, "solve", solve)
+            return trial
+
+        find_unseen_climb(problem, flat, build, RESTING)
+        return len(asked)
+
+    assert solved(-1.0) == 2
+    assert solved(1.0) == (1 if kind is power else 2)
+    assert solved(unseen_climbs.HOPELESS + 1.0) == 1
