@@ -14,6 +14,7 @@ from estimator.fusion.entering.introduce import initial_turn, turn_sigma
 from estimator.fusion.entering.unit_mounting import RIGHT, reported
 from estimator.fusion.learned.calibration import UNTOLD
 from estimator.fusion.learned.report_period import Cadence
+from estimator.fusion.learned.straight_legs import StraightLegs
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.dead_reckoning import FLOOR
@@ -38,7 +39,7 @@ def announce(state: FusionState, reading: Node) -> None:
     node = state.nodes[reading.node]
     state.navigations.pop(node.node, None)
     state.nodes[node.node] = replace(
-        node, changed=(reading.t, reading.heading_rad), still=None, cadence=Cadence()
+        node, changed=(reading.t, reading.heading_rad), still=None, straight=StraightLegs(), cadence=Cadence()
     )
     state.announced[node.node] = reading.t
     faces = "as told" if reading.heading_rad is not None else "not known"

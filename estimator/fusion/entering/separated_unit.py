@@ -12,6 +12,7 @@ from msgspec.structs import replace
 
 from estimator.fusion.entering.replaced_unit import change, framed
 from estimator.fusion.images import doubt_m2
+from estimator.fusion.learned.straight_legs import StraightLegs
 from estimator.fusion.memory.ledger import GIVEN, UNSEEN
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.separated_unit import SeparatedUnit
@@ -76,7 +77,9 @@ def part(
 def join(state: FusionState, name: str) -> None:
     """Radio and unit go together again: steps count, and what the unit faces is to be found anew."""
     node = state.nodes[name]
-    state.nodes[name] = replace(node, apart=None, changed=(node.pose_t, None), still=None, trail=())
+    state.nodes[name] = replace(
+        node, apart=None, changed=(node.pose_t, None), still=None, straight=StraightLegs(), trail=()
+    )
     change(state, name)
     state.nodes[name] = replace(state.nodes[name], changed=None, joined_t=node.pose_t)
     state.due = True

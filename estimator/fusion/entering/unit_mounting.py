@@ -12,6 +12,7 @@ from msgspec.structs import replace
 
 from estimator.fusion.entering.introduce import turn_sigma
 from estimator.fusion.images import Image
+from estimator.fusion.learned.straight_legs import StraightLegs
 from estimator.fusion.memory.ledger import GYRO_BIAS
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -108,6 +109,7 @@ def mount(state: FusionState, number: int, worn: Mounting) -> None:
             trail=trail,
             faced=change.of(*node.faced),
             still=None,
+            straight=StraightLegs(),
             unit_heading_rad=change.faced(node.unit_heading_rad),
             first_heading_rad=change.faced(node.first_heading_rad),
         )

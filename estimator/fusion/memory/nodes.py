@@ -11,6 +11,7 @@ from estimator.fusion.images import Alternative
 from estimator.fusion.learned.calibration import UNTOLD, Told
 from estimator.fusion.learned.report_period import Cadence
 from estimator.fusion.learned.rival import Rival
+from estimator.fusion.learned.straight_legs import StraightLegs
 from estimator.fusion.learned.zaru import Standing
 from estimator.fusion.memory.absolute import Absolute
 from estimator.fusion.memory.separated_unit import SeparatedUnit
@@ -53,6 +54,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         faced: where its bearer last went, as a unit vector in the unit's frame; nil before he has set out.
         trail: epochs, and displacements summed up to them in the unit's frame: newest seconds only.
         still: headings that its unit has reported since it stands still.
+        straight: what straight legs have told of its unit's gyro.
         way_m: length of its way so far.
         absolute: what fixes, heights and `node` readings have told of its place.
         pressure_t: epoch of its newest fused pressure.
@@ -97,6 +99,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     faced: tuple[float, float] = (0.0, 0.0)
     trail: tuple[tuple[float, float, float, float], ...] = ()
     still: Standing | None = None
+    straight: StraightLegs = StraightLegs()
     way_m: float = 0.0
     absolute: Absolute = Absolute()
     pressure_t: float | None = None

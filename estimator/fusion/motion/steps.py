@@ -7,12 +7,13 @@ from msgspec.structs import replace
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
-from estimator.fusion.learned.zaru import stand_on
+from estimator.fusion.learned.straight_legs import StraightLegs
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m
 from estimator.fusion.motion.long_displacements import STRAIGHT_S, WALKED_MPS, turned_m2, walked_m
 from estimator.fusion.motion.recent_places import Mark
 from estimator.fusion.motion.silence import LONGEST_S, unheard_m2, went_on
+from estimator.fusion.motion.told_biases import SET_OFF_RAD2PS2, ToldBias, ToldBiases
 from estimator.inertial.displacement import InertialDisplacement
 from estimator.inertial.strapdown import RATE_WALK
 from estimator.measurements.displacement import Displacement
@@ -32,24 +33,8 @@ WARMING_PER_S = RATE_WALK**2
 Noise = tuple[float, float, float, float, float, float]
 """Variances of east, north, up (m²), ψ (rad²), β (rad²/s²) and s."""
 NOTHING = (0.0,) * 6
-SET_OFF: Noise = (0.0, 0.0, 0.0, 0.0, physics.SET_OFF_BIAS_RADPS**2, 0.0)
+SET_OFF: Noise = (0.0, 0.0, 0.0, 0.0, SET_OFF_RAD2PS2, 0.0)
 """What a bias is unsure by of which a standstill has told, once its bearer goes."""
-
-
-class Turn(NamedTuple):
-    """The gyro bias that a standstill has told (ZARU).
-
-    Attributes:
-        t: epoch of the last report that tells it (s).
-        value: the bias (rad/s).
-        sigma: its standard deviation (rad/s).
-        since: variance that it has gained since then (rad²/s²).
-    """
-
-    t: float
-    value: float
-    sigma: float
-    since: float = 0.0
 
 
 class Increment(NamedTuple):
@@ -59,14 +44,14 @@ class Increment(NamedTuple):
         since_t: epoch that the unit's position referred to before it (s).
         delta_m: displacement in the unit's frame (m).
         noise: variances that it adds.
-        turn: what a standstill tells, if one has ended or lasted long.
+        biases: what standstills and straight legs tell, those that have ended or lasted long.
         too_fast: nobody moves so far in its time.
     """
 
     since_t: float
     delta_m: Vector3
     noise: Noise
-    turn: Turn | None
+    biases: tuple[ToldBias, ...]
     too_fast: bool
 
 
@@ -88,11 +73,16 @@ class Step:
         self.noise: Noise = NOTHING
         self._pose_t, self._unit_t = node.pose_t, node.unit_t
         self._heading_rad, self._speed_mps = node.unit_heading_rad, node.speed_mps
-        self._still, self._way_m, self._faced = node.still, node.way_m, node.faced
+        self._way_m, self._faced, self._biases = node.way_m, node.faced, ToldBiases(node)
         self._level, self._unseen_up_m2 = node.level, node.unseen_up_m2
         self._marks: list[Mark] = list(node.trail or ((node.pose_t, 0.0, 0.0, 0.0),))
         self._whole_t, self._missed_s = node.whole_t, node.missed_s
         self.taken = False
+
+    @property
+    def straight(self) -> StraightLegs:
+        """What straight legs have told of its gyro so far."""
+        return self._biases.straight
 
     def take(self, reading: Displacement) -> Increment | None:
         """Hold a displacement against what its unit reported before; None where that covers its epoch."""
@@ -126,11 +116,9 @@ class Step:
         if too_fast:
             across, up = across + length**2, up + length**2
         still = own > 0.0 and length < physics.STILL_MPS * own and start <= pose_t
-        turn, sets_off = self._stand(reading, still)
+        sets_off = self._biases.stand(reading, still)
         if type(reading) is InertialDisplacement:
             up += reading.up_m2 + (physics.STRAPDOWN_SCALE_SIGMA * u) ** 2
-            if reading.rested_radps > 0.0:
-                turn = Turn(t, 0.0, reading.rested_radps)
         else:
             up += (physics.SCALE_SIGMA * u) ** 2
         up += self._climb_m2(reading, length)
@@ -141,6 +129,7 @@ class Step:
             noise = sum_of(noise, (unseen, unseen, 0.0, 0.0, 0.0, 0.0))
         if sets_off:
             noise = sum_of(noise, SET_OFF)
+        self._biases.walk(start, t, (e, n), noise[3] * max(self.node.walk_factors[1], 1.0))
         if own > 0.0:
             gone_m = math.hypot(e, n)
             self._speed_mps = gone_m / own
@@ -155,7 +144,7 @@ class Step:
         self.delta_m = before_e + e, before_n + n, before_u + u
         self.duration_s += duration
         self.noise = sum_of(self.noise, self._as_learned(noise, reading))
-        return Increment(pose_t, (e, n, u), noise, turn, too_fast)
+        return Increment(pose_t, (e, n, u), noise, self._biases.take(), too_fast)
 
     def pace_mps(self) -> Vector3:
         """How fast the bearer has gone in the last stride, in the unit's frame: east, north, up (m/s)."""
@@ -207,25 +196,6 @@ class Step:
         climb_m2, self._unseen_up_m2 = self._unseen_up_m2, 0.0
         return climb_m2
 
-    def _stand(self, reading: Displacement, still: bool) -> tuple[Turn | None, bool]:
-        """Go on standing, or stop.
-
-        Returns:
-            The gyro bias that this tells, and whether its bearer sets off after it has been told.
-        """
-        before, stood, told = self._still, None, None
-        if still and reading.heading_rad is not None:
-            stood, told = stand_on(before, reading.t, reading.heading_rad)
-        elif still:
-            stood = before
-        elif before is not None:
-            told = before.bias()
-        self._still = stood
-        sets_off = not still and before is not None and (before.told or told is not None)
-        if before is None or told is None:
-            return None, sets_off
-        return Turn(before.t, *told, SET_OFF[4] if sets_off else 0.0), sets_off
-
     def after(self) -> NodeState:
         """The unit after the step."""
         node, marks, t = self.node, self._marks, self._pose_t
@@ -243,7 +213,8 @@ class Step:
             speed_mps=self._speed_mps,
             faced=self._faced,
             trail=tuple(marks[max(oldest - 1, 0) :]),
-            still=self._still,
+            still=self._biases.still,
+            straight=self._biases.straight,
             way_m=self._way_m,
             level=self._level,
             unseen_up_m2=self._unseen_up_m2,

@@ -10,24 +10,24 @@ from estimator.fusion.entering.base_entry import begin_at_base, may_be_inside, w
 from estimator.fusion.entering.guesses import forget_place, is_guessed_to_stand
 from estimator.fusion.entering.introduce import attach_unit
 from estimator.fusion.entering.replaced_unit import begin_frame, framed
-from estimator.fusion.memory.ledger import ASSUMED, CLAIMED, GYRO_BIAS
+from estimator.fusion.memory.ledger import ASSUMED, CLAIMED
 from estimator.fusion.memory.state import Count, FusionState
 from estimator.fusion.motion.dead_reckoning import advance_units
 from estimator.fusion.motion.steps import Step, start_of
-from estimator.fusion.physics import NOISES
+from estimator.fusion.readings.gyro_biases import enter, weigh_anew
 from estimator.fusion.rows.rows import Single
 from estimator.inertial.displacement import InertialDisplacement
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import MOVING_ROLES
 
 
-def move_units(state: FusionState, readings: Sequence[Displacement], turns: list[Single]) -> None:
+def move_units(state: FusionState, readings: Sequence[Displacement], biases: list[Single]) -> None:
     """Fold a tick's displacements: one transition for all units at once, and ZARU where they stand still.
 
     Args:
         state: the fusion.
         readings: in order of epoch.
-        turns: takes the gyro biases that standing units tell.
+        biases: takes the gyro biases that units tell.
     """
     steps: dict[str, Step] = {}
     for reading in readings:
@@ -40,7 +40,7 @@ def move_units(state: FusionState, readings: Sequence[Displacement], turns: list
         if step.node.raw != (type(reading) is InertialDisplacement):
             set_aside(state, reading.node, reading.t)
             _count(state, reading, "not_fused")
-        elif _extend(state, step, framed(step.node, reading), turns):
+        elif _extend(state, step, framed(step.node, reading), biases):
             _count(state, reading, "fused")
     moving = [step for step in steps.values() if step.taken]
     if moving:
@@ -109,8 +109,9 @@ def returns(state: FusionState, readings: Sequence[Displacement]) -> dict[str, f
     return back
 
 
-def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[Single]) -> bool:
-    node, increment = step.node, step.take(reading)
+def _extend(state: FusionState, step: Step, reading: Displacement, biases: list[Single]) -> bool:
+    node, straight = step.node, step.straight
+    increment = step.take(reading)
     if increment is None:
         text = f"{node.node} reported another displacement that covers this one's epoch, which is set aside"
         if node.unit_t is None and not step.taken:
@@ -123,14 +124,9 @@ def _extend(state: FusionState, step: Step, reading: Displacement, turns: list[S
         text = f"{node.node} reported {length:.1f} m at once, faster than anyone runs"
         state.say("outlier", reading.t, node.node, text)
         state.count("outlier")
-    if increment.turn is not None:
-        told, noise = increment.turn, physics.TURN_NOISE
-        state.ledger.add(
-            "singles", told.t, node.index, GYRO_BIAS, told.value, told.sigma, float(NOISES.index(noise)), -1.0
-        )
-        # The tick moves on first, then takes in what was told before.
-        sigma = math.sqrt(told.sigma**2 + told.since)
-        turns.append(Single(node.unit, 1, told.value, sigma, noise))
+    if step.straight.number > straight.number:
+        weigh_anew(state, node, straight, step.straight)
+    biases += enter(state, node, increment.biases)
     given = ASSUMED if reading.sigma_m is None else CLAIMED
     across, _, up, turn, bias, scale = increment.noise
     variances = (across, up, turn, bias, scale, given)

@@ -43,6 +43,7 @@ SINGLE_KINDS: dict[int, EvidenceKind] = {
     physics.NOISES.index(physics.FIX_NOISE): "fix",
     physics.NOISES.index(physics.HEIGHT_NOISE): "height",
     physics.NOISES.index(physics.TURN_NOISE): "stillness",
+    physics.NOISES.index(physics.STRAIGHT_NOISE): "straightness",
 }
 
 

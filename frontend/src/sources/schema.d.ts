@@ -1286,9 +1286,9 @@ export interface components {
          *             t: its epoch, Unix seconds; of a displacement the end of the way.
          *             a: the node that measured, or that it is about.
          *             b: the node at the other end; None where there is none.
-         *             value: what was read, in its own unit: m, dBm, rad; of a displacement its length (m); of a radio that
-         *                 fell silent or was heard again, how far radios reach (m); 0 of a drop, and of what was known
-         *                 beforehand of a node: where it began, how its unit errs.
+         *             value: what was read, in its own unit: m, dBm, rad, rad/s of a gyro bias; of a displacement its length
+         *                 (m); of a radio that fell silent or was heard again, how far radios reach (m); 0 of a drop, and of
+         *                 what was known beforehand of a node: where it began, how its unit errs.
          *             residual: what was read less what the solution says, in the same unit.
          *             sigma: standard deviation that it was given, in the same unit.
          *             weight: probability that it is a good reading and no outlier, 0 to 1.
@@ -1297,7 +1297,7 @@ export interface components {
          */
         Measurement: {
             /** @enum {unknown} */
-            kind: "bearing" | "displacement" | "drop" | "fix" | "height" | "prior" | "range" | "reach" | "rssi" | "stillness";
+            kind: "bearing" | "displacement" | "drop" | "fix" | "height" | "prior" | "range" | "reach" | "rssi" | "stillness" | "straightness";
             t: number;
             a: string;
             /** @default null */

@@ -41,6 +41,7 @@ test("what a node measured by itself names nobody else", () => {
   expect(what({ kind: "displacement", b: null })).toBe("Own steps");
   expect(what({ kind: "displacement", b: "ff1" })).toBe("Own steps");
   expect(what({ kind: "height", b: null })).toBe("Height");
+  expect(what({ kind: "straightness", b: null })).toBe("Straight walk");
 });
 
 test("a measurement between others names both, or the one it is about", () => {
@@ -58,6 +59,8 @@ test.each([
   [{ kind: "height", residual: 2 }, "2.0 m too high"],
   [{ kind: "bearing", residual: -0.2 }, "11° off"],
   [{ kind: "displacement", residual: -0.3 }, "0.3 m off"],
+  [{ kind: "stillness", residual: 0.0001 }, "fits"],
+  [{ kind: "straightness", residual: -0.0052 }, "0.3 °/s off"],
 ] as const)("%o reads %s", (over, text) => {
   expect(off(over)).toBe(text);
 });

@@ -16,6 +16,7 @@ const ABOUT_ONE: Record<Measurement["kind"], string> = {
   fix: "Position fix",
   height: "Height",
   stillness: "Standing still",
+  straightness: "Straight walk",
   drop: "Breadcrumb drop",
   displacement: "Own steps",
   prior: "Known beforehand",
@@ -96,6 +97,9 @@ function offWords({ kind, residual }: Measurement): string {
       return signed(`${Math.abs(residual).toFixed(0)} dB`, residual, "too strong", "too weak");
     case "bearing":
       return signed(`${Math.abs((residual * 180) / Math.PI).toFixed(0)}°`, residual, "off", "off");
+    case "stillness":
+    case "straightness":
+      return signed(`${Math.abs((residual * 180) / Math.PI).toFixed(1)} °/s`, residual, "off", "off");
     default:
       return signed(metres(Math.abs(residual)), residual, "off", "off");
   }

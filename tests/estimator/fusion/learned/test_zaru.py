@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.fusion import physics
-from estimator.fusion.learned.zaru import Bias, Standing, stand_on
+from estimator.fusion.learned.heading_line import Bias
+from estimator.fusion.learned.zaru import Standing, stand_on
 from estimator.fusion.memory.ledger import Ledger
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.tick import fold_tick
@@ -85,7 +86,7 @@ def test_whoever_may_have_turned_in_a_silence_begins_a_standstill_anew() -> None
     standing, bias = stand_on(stood([-0.001 * i for i in range(28)])[0], 200.0, 1.5)
     assert bias is not None
     assert bias.value == pytest.approx(0.001)
-    assert standing.since_t == 200.0
+    assert standing.line.since_t == 200.0
 
 
 def test_a_standstill_that_ends_tells_the_units_bias_when_its_bearer_walks_on() -> None:

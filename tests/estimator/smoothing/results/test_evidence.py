@@ -38,6 +38,22 @@ def test_who_has_hardly_been_measured_is_held_by_where_he_is_taken_to_have_begun
     assert sum(m.share for m in found.held) == pytest.approx(1.0, abs=1e-9)
 
 
+def test_a_straight_leg_holds_who_has_gone_on_after_it() -> None:
+    """Nobody is heard: that he walked straight is all that tells of his unit's gyro."""
+    begun = Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.1)
+    ways = [(1.0, 0.0, 0.0)] * 30 + [(0.0, 1.0, 0.0)] * 30
+    steps = [
+        Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=way) for t, way in enumerate(ways, start=1)
+    ]
+    found = SMOOTHER.evidence([begun, *steps], "ff1")
+    assert found is not None
+    (straight,) = [m for m in found.held if m.kind == "straightness"]
+    assert straight.a == "ff1"
+    assert straight.value == pytest.approx(0.0, abs=1e-9)
+    assert straight.share > 0.05
+    assert straight.weight > 0.8
+
+
 def test_an_anchor_is_held_by_what_was_told_of_it() -> None:
     found = SMOOTHER.evidence(walk(), "anchor")
     assert found is not None
