@@ -1,7 +1,7 @@
 """What is held against the graph together, and when: some wait for displacements that cover their epochs."""
 
 import math
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from itertools import chain
 from operator import attrgetter
@@ -12,6 +12,7 @@ from msgspec.structs import replace
 from estimator.fusion import physics
 from estimator.fusion.entering import base_entry, beginnings, late_start
 from estimator.fusion.memory.hearing import Crossing
+from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.fusion.motion.constant_velocity import move_free
 from estimator.fusion.motion.dead_reckoning import drift_units
@@ -52,22 +53,24 @@ def names_of(reading: AnyFolded | Crossing) -> tuple[str, ...]:
 
 
 def covered(
-    state: FusionState, readings: Sequence[AnyHeld], late_t: float, unwaited: set[str]
+    state: FusionState, readings: Sequence[AnyHeld], until_t: float, unwaited: set[str]
 ) -> list[AnyHeld]:
     """Readings to be held now; for the others a displacement that covers their epoch may still come.
 
     Args:
         state: the fusion: takes those that wait.
         readings: in order of epoch.
-        late_t: epoch before which none waits.
+        until_t: newest epoch (s).
         unwaited: nodes for whose displacements nothing waits.
     """
-    units = _told_until(state)
-    soonest = min(units.values(), default=math.inf)
+    told_until = _told_until(state)
+    soonest = min(told_until.values(), default=math.inf)
     if not readings or readings[-1].t <= soonest:
         state.waiting = ()
         return list(readings)
-    told = max(bisect_right(readings, soonest, key=EPOCH), bisect_left(readings, late_t, key=EPOCH))
+    # None waits for a displacement that should have come long ago.
+    units = {name: max(t, until_t - _wait_s(state.nodes[name])) for name, t in told_until.items()}
+    told = bisect_right(readings, min(units.values()), key=EPOCH)
     ready = list(readings[:told])
     waiting: list[AnyHeld] = []
     for reading in readings[told:]:
@@ -76,6 +79,12 @@ def covered(
         (waiting if wait and unwaited.isdisjoint(names) else ready).append(reading)
     state.waiting = tuple(waiting)
     return ready
+
+
+def _wait_s(node: NodeState) -> float:
+    """For how long readings wait for a unit's next report (s)."""
+    lasted_s = node.report_s if node.report_s <= physics.REPORT_LONGEST_S else 0.0
+    return max(physics.PENDING_S, physics.REPORT_LATE * lasted_s)
 
 
 def _told_until(state: FusionState) -> dict[str, float]:

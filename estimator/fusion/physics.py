@@ -258,7 +258,9 @@ NOISE_PRIOR = 20.0
 """How many readings the assumed noise counts as."""
 
 PENDING_S = 2.0
-"""A reading waits so long for the displacement that covers its epoch."""
+"""A reading waits so long for the displacement that covers its epoch, at least."""
+REPORT_LATE, REPORT_LONGEST_S = 1.5, 20.0
+"""Of a unit that reports seldom so many times what its newest report lasted; longer ones sum up a silence."""
 
 # Static nodes that begin with ranges or RSSI only.
 SIGHTINGS_MIN = 6

@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from operator import itemgetter
 
-from estimator.fusion import physics
 from estimator.fusion.entering import (
     corrections,
     late_introductions,
@@ -70,12 +69,12 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     holds += hear(state, powers)
     displacements = separated_unit.set_aside(state, with_starts(state, displacements))
     holds.sort(key=EPOCH)
-    late_t, gone_out = until_t - physics.PENDING_S, {r.node for r in retired}
+    gone_out = {r.node for r in retired}
     for name, changed_t in state.announced.items():
         # What the old unit has told of leads up to where the new one is put on.
         early = [r for r in displacements if r.node == name and r.t <= changed_t]
         displacements = [r for r in displacements if r.node != name or r.t > changed_t]
-        _fold(state, early, [], late_t, {name})
+        _fold(state, early, [], until_t, {name})
         replaced_unit.change(state, name)
         another_altimeter(state, name, changed_t)
     while back := returns(state, displacements):
@@ -83,11 +82,11 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         name, back_t = min(back.items(), key=itemgetter(1))
         early = [r for r in displacements if r.t <= back.get(r.node, math.inf)]
         displacements = [r for r in displacements if r.t > back.get(r.node, math.inf)]
-        _fold(state, early, [r for r in holds if r.t <= back_t], late_t, {name})
+        _fold(state, early, [r for r in holds if r.t <= back_t], until_t, {name})
         holds = [*state.waiting, *(r for r in holds if r.t > back_t)]
         drift_units(state, {name: back_t}, onward=True)
         state.suspected = state.suspected or was_silent(state.nodes[name])
-    _fold(state, displacements, holds, late_t, gone_out)
+    _fold(state, displacements, holds, until_t, gone_out)
     for gone in retired:
         leaving.retire(state, gone, estimate_of(state, gone.node))
     for reading in returned:
@@ -105,7 +104,7 @@ def _fold(
     state: FusionState,
     displacements: Sequence[Displacement],
     holds: Sequence[AnyHeld],
-    late_t: float,
+    until_t: float,
     unwaited: set[str],
 ) -> None:
     """Move units, and hold against everybody's places what nothing is to be waited for.
@@ -114,13 +113,13 @@ def _fold(
         state: the fusion: takes readings that wait.
         displacements: in order of epoch.
         holds: all others, in order of epoch.
-        late_t: epoch before which none waits.
+        until_t: newest epoch (s).
         unwaited: nodes for whose displacements nothing waits.
     """
     singles: list[Single] = []
     holds = _begin_at_fixes(state, holds)
     move_units(state, displacements, singles)
-    ready = covered(state, holds, late_t, unwaited)
+    ready = covered(state, holds, until_t, unwaited)
     for part in parts_of(state, ready):
         if part or singles:
             hold(state, part, singles)

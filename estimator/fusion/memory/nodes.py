@@ -36,6 +36,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         t: epoch of its newest fused reading.
         pose_t: epoch that its position refers to, where it moves.
         unit_t: epoch of its unit's newest displacement.
+        report_s: for how long that lasted (s).
         place_m: its position where it is fixed or retired.
         covariance_m2: of `place_m`, where it is retired.
         heading_rad: as told by its `node` reading.
@@ -89,6 +90,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     t: float
     pose_t: float = 0.0
     unit_t: float | None = None
+    report_s: float = 0.0
     place_m: Vector3 | None = None
     covariance_m2: Covariance6 | None = None
     heading_rad: float | None = None

@@ -71,7 +71,7 @@ class Step:
         self.delta_m: Vector3 = (0.0, 0.0, 0.0)
         self.duration_s = 0.0
         self.noise: Noise = NOTHING
-        self._pose_t, self._unit_t = node.pose_t, node.unit_t
+        self._pose_t, self._unit_t, self._report_s = node.pose_t, node.unit_t, node.report_s
         self._heading_rad, self._speed_mps = node.unit_heading_rad, node.speed_mps
         self._way_m, self._faced, self._biases = node.way_m, node.faced, ToldBiases(node)
         self._level, self._unseen_up_m2 = node.level, node.unseen_up_m2
@@ -93,7 +93,7 @@ class Step:
         start = start_of(reading, pose_t if unit_t is None else unit_t)
         e, n, u = reading.delta_m
         duration = min(t - pose_t, LONGEST_S)
-        own = max(t - start, 0.0)
+        own = self._report_s = max(t - start, 0.0)
         length = math.sqrt(e * e + n * n + u * u)
         across = up = 0.0
         onward: Vector3 = (0.0, 0.0, 0.0)
@@ -209,6 +209,7 @@ class Step:
             t=max(node.t, t),
             pose_t=t,
             unit_t=self._unit_t,
+            report_s=self._report_s,
             unit_heading_rad=self._heading_rad,
             speed_mps=self._speed_mps,
             faced=self._faced,

@@ -5,6 +5,7 @@ import pytest
 from estimator.estimate import NodeEstimate
 from estimator.fusion import physics
 from estimator.fusion.holding import parts_of
+from estimator.fusion.memory.ledger import Ledger
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
@@ -105,3 +106,42 @@ def test_what_is_heard_of_who_has_no_unit_is_held_by_quarters_of_a_second() -> N
     of_the_other = [Range(t=t, a="ff2", b="base", range_m=5.0, technology="uwb") for t in (9.1, 9.2, 9.3)]
     held = parts_of(state, sorted([*of_the_unit, *of_the_other], key=lambda reading: reading.t))
     assert held == [of_the_unit, of_the_other[:2], of_the_other[2:]]
+
+
+@pytest.mark.parametrize("period_s", [1, 3, 6, 10])
+def test_what_is_heard_between_two_reports_of_a_unit_waits_for_the_second_one(period_s: int) -> None:
+    """Held before, it would have its bearer stand about, and of the report only what is left would count."""
+    state = FusionState()
+    begins = [
+        Node(t=0.0, node="base", role="base", position_m=(0.0, 0.0, 0.0)),
+        Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.1),
+    ]
+    fold_tick(state, 0.5, begins)
+    was_m = 0.0
+    for second in range(1, 6 * period_s + 1):
+        t = float(second)
+        heard: list[AnyReading] = [Rssi(t=t - 0.5, a="ff1", b="base", dbm=-70.0)]
+        if second % period_s == 0:
+            way_m = (float(period_s), 0.0, 0.0)
+            heard.append(Displacement(t=t, from_t=t - period_s, node="ff1", delta_m=way_m))
+        fold_tick(state, t, heard)
+        if second == period_s:
+            was_m = float(state.graph.value(state.nodes["ff1"].position)[0])
+    gone_m = float(state.graph.value(state.nodes["ff1"].position)[0]) - was_m
+    assert gone_m == pytest.approx(5.0 * period_s, rel=0.15)
+
+
+def test_what_waits_for_a_unit_that_fell_silent_is_held_at_last() -> None:
+    state = FusionState()
+    state.ledger = Ledger(complete=True)
+    begins = [
+        Node(t=0.0, node="base", role="base", position_m=(0.0, 0.0, 0.0)),
+        Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.1),
+    ]
+    fold_tick(state, 0.5, begins)
+    fold_tick(state, 6.0, [Displacement(t=6.0, from_t=0.0, node="ff1", delta_m=(6.0, 0.0, 0.0))])
+    for second in range(7, 20):
+        fold_tick(state, float(second), [Range(t=float(second), a="ff1", b="base", range_m=6.0)])
+    waits_s = physics.REPORT_LATE * 6.0
+    assert [reading.t for reading in state.waiting] == [t for t in range(7, 20) if t > 19.0 - waits_s]
+    assert len(state.ledger.table("pairs")) == 13 - len(state.waiting)
