@@ -74,8 +74,7 @@ class ToldBiases:
 
     def walk(self, start_t: float, t: float, moved_m: tuple[float, float], walk_rad2: float) -> None:
         """Walk on: see `StraightLegs.walked`."""
-        before = self.straight
-        self.straight, told = before.walked(start_t, t, moved_m, walk_rad2)
+        self.straight, told = self.straight.walked(start_t, t, moved_m, walk_rad2)
         if told is not None:
             sigma = self.straight.sigma_radps(told.sigma)
             self._told.append(ToldBias(t, Bias(told.value, sigma), physics.STRAIGHT_NOISE))
