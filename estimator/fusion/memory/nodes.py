@@ -65,6 +65,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         unseen_up_m2: variance of its height by the stairs that such a unit does not see.
         climbs: distances have told that its bearer has climbed unseen by it.
         turned: its unit's frame may be turned by any angle: every window is tried with several.
+        bent: the window's newest solution has its unit face elsewhere at first than was told.
         bias_told: what readings say of its unit's gyro bias without its prior.
         otherwise: where it may be instead, by what readings tell as well.
         whole_t: since when its unit's displacements follow each other without a gap; while it is undecided,
@@ -112,6 +113,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     climbs: bool = False
     walk_factors: tuple[float, float] = (1.0, 1.0)
     turned: bool = False
+    bent: bool = False
     bias_told: Told = UNTOLD
     otherwise: tuple[Alternative, ...] = ()
     device: str | None = None

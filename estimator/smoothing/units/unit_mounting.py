@@ -72,6 +72,10 @@ def likeliest_mounting(
     state, layout = problem.layout.state, problem.layout
     bent = bent_headings(layout, solved.x)
     asked = asked_of(problem, asked_t, bent)
+    for walk in layout.walks:
+        node = state.life(walk.number)
+        if node.bent != (walk.number in bent):
+            state.keep(replace(node, bent=not node.bent))
     numbers = [layout.walks[i].number for i in asked]
     anew = bool(bent) or _speak(state)
     found = hypotheses(state, numbers, solved.x, build, resting, anew) if asked else []
@@ -129,8 +133,9 @@ def bent_headings(layout: Layout, x: Array) -> dict[int, float]:
 def asked_of(problem: Problem, asked_t: float | None, bent: Mapping[int, float]) -> list[int]:
     """Walks of whose units it is asked how they are worn, by index.
 
-    It is asked by the clock, again when the window has become longer. Those are asked about first against
-    whom most speaks; where nothing even hints at anybody some are, while the window is young.
+    It is asked by the clock, again when the window has become longer, and at once when a solution first bends
+    what a unit faced at first. Those are asked about first against whom most speaks; where nothing even hints
+    at anybody some are, while the window is young.
 
     Args:
         problem: of a window.
@@ -148,6 +153,7 @@ def asked_of(problem: Problem, asked_t: float | None, bent: Mapping[int, float])
         longer = LITTLE_LONGER if speaks else LONGER
         before_s = length_s - (state.newest_t - asked_t)
         due = _times(before_s, longer) < _times(length_s, longer) and (hinted or length_s < YOUNG_S)
+        due = due or any(not state.life(number).bent for number in bent)
     if not due:
         return []
     found = [

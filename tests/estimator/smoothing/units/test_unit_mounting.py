@@ -66,6 +66,15 @@ def test_a_heading_that_a_solution_has_far_from_what_was_told_is_asked_about_fir
     assert [problem.layout.walks[i].number for i in asked[:2]] == [numbers[2], numbers[1]]
 
 
+def test_it_is_asked_at_once_when_a_solution_first_bends_a_heading_and_then_by_the_clock() -> None:
+    problem = until(80.0)
+    state, number = problem.layout.state, problem.layout.walks[2].number
+    bent = {number: BENT + 1.0}
+    assert problem.layout.walks[asked_of(problem, 79.0, bent)[0]].number == number
+    state.keep(replace(state.life(number), bent=True))
+    assert asked_of(problem, 79.0, bent) == []
+
+
 def test_headings_are_held_against_what_was_told_of_them_where_the_unit_began() -> None:
     problem = until(40.0)
     layout, x = problem.layout, problem.layout.start()
