@@ -5,7 +5,7 @@ public sets plaza1, danis and hanyang, and the scenarios of `estimator.simulate`
 therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M`, `SCALE_SIGMA`,
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
 `FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `RSSI_POWER_DBM` and its sigma, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE`,
-`WALL_M`, `EXCESS_M` and the two after it, `STRAIGHT_SHARED_RADPS`, `UNHEARD_MEMORY_S`,
+`WALL_M`, `EXCESS_M` and the two after it, `UNHEARD_MEMORY_S`,
 `SET_OFF_BIAS_RADPS` (with plaza2 in view as well), `NO_BODY_M`, from which probability on bodies are taken to
 be seen, and that the spread of gyro biases is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm.
 "Measured" stands beside figures that public recordings show.
@@ -14,7 +14,7 @@ Some stand in compiled functions, which keep the number that they were compiled 
 `__pycache__` (decision 0007).
 """
 
-from math import radians
+from math import radians, sqrt
 
 from estimator.graph.robust import Mixture
 
@@ -75,9 +75,12 @@ is worth."""
 SAGITTA_M = 0.2
 """By how much a way without a corner leaves its chord: that turns who goes it, and looks like gyro bias.
 Measured: people on hanyang's square 0.17 and 0.19 m (rms), plaza1's mower 0.42 m, half of its ways 0.21 m."""
-STRAIGHT_SHARED_RADPS = 0.004
-"""All ways of somebody may be bent alike, by a round building or by habit, about a radius of 250 m at 1 m/s:
-however many tell no bias any better."""
+STRAIGHT_SHARED_RADPS = BIAS_SIGMA_MOST_RADPS / sqrt(3.0)
+"""All ways of somebody may be bent alike, by a round building or by habit, and nothing tells that from his
+gyro: by as much as gyros differ (the rms of spreads up to half a degree a second), so that half of what all
+turn by is taken for either. It is a radius of 200 m at 1 m/s."""
+STRAIGHT_MORE = 2.0
+"""A leg under way tells again what it shows once that is so many times as much information."""
 STRAIGHT_LEGS = 4.0
 """As how many legs the assumed straightness counts, beside what they differ by."""
 CORNER_RAD = radians(20.0)

@@ -5,7 +5,8 @@ straight, and the turn is the unit's (Borenstein, Ojeda and Kwanmuang 2009, "Heu
 in IMU-based Personnel Tracking Systems"). Nobody walks quite straight: a leg of length L that leaves its
 chord by s in the middle turns by 8 s / L from end to end, so that a short one tells nothing.
 
-How straight somebody's legs are they show themselves: by what the biases that they tell differ.
+How straight somebody's legs are they show themselves: by what the biases that they tell differ. A leg tells
+while it is under way, each time what it has not told yet.
 """
 
 import math
@@ -27,6 +28,7 @@ class Leg(msgspec.Struct, frozen=True, array_like=True):
         newest: epoch (s) and direction (rad) of the one after them: it may be half in a corner.
         way_m: how long all of them are (m).
         walk_rad2: variance that the angle of the unit's frame has gained on them (rad²).
+        told: what has been told of the bias b that it shows, with variance v: 1/v, b/v (s²/rad², s/rad).
     """
 
     mark_t: float
@@ -35,6 +37,7 @@ class Leg(msgspec.Struct, frozen=True, array_like=True):
     newest: tuple[float, float] | None = None
     way_m: float = 0.0
     walk_rad2: float = 0.0
+    told: tuple[float, float] = (0.0, 0.0)
 
     def bias(self) -> Bias | None:
         """The bias that it shows, on a way that is as straight as ways are; None where it shows none."""
@@ -42,7 +45,15 @@ class Leg(msgspec.Struct, frozen=True, array_like=True):
         if line is None or line.number < physics.STILL_READINGS:
             return None
         value, sigma = line.bias(physics.CHORD_JITTER_RAD, self.walk_rad2 / line.lasted_s)
-        return Bias(value, math.hypot(sigma, 8.0 * physics.SAGITTA_M / (self.way_m * line.lasted_s)))
+        sigma = math.hypot(sigma, 8.0 * physics.SAGITTA_M / (self.way_m * line.lasted_s))
+        return None if sigma > physics.BIAS_SIGMA_MOST_RADPS else Bias(value, sigma)
+
+    def beyond(self, bias: Bias) -> Bias | None:
+        """What the bias that it shows tells beyond what it has told; None: less than is known of any gyro."""
+        known, before = bias.sigma**-2, self.told[0]
+        if known - before < physics.BIAS_SIGMA_MOST_RADPS**-2:
+            return None
+        return Bias((known * bias.value - self.told[1]) / (known - before), (known - before) ** -0.5)
 
 
 class StraightLegs(msgspec.Struct, frozen=True, array_like=True):
@@ -68,9 +79,14 @@ class StraightLegs(msgspec.Struct, frozen=True, array_like=True):
         return max((usual + three - two**2 / one) / (usual + self.number - 1.0), 1.0)
 
     @property
-    def shared_rad2ps2(self) -> float:
-        """What each of them is unsure by for all may be bent alike, so that all together are no surer."""
-        return self.number * physics.STRAIGHT_SHARED_RADPS**2
+    def unsurer(self) -> float:
+        """By what the variance v of each of them is multiplied beside all others.
+
+        All may be bent alike, by c² of variance: then they tell 1 / (1 / Σ 1/v + c²) together, as those with
+        v (1 + c² Σ 1/v) do that are bent each by itself.
+        """
+        told = self.sums[0] + (0.0 if self.leg is None else self.leg.told[0])
+        return self.bent + told * physics.STRAIGHT_SHARED_RADPS**2
 
     def sigma_radps(self, sigma_radps: float) -> float:
         """Standard deviation of a bias that one of them shows, beside all others (rad/s).
@@ -78,7 +94,7 @@ class StraightLegs(msgspec.Struct, frozen=True, array_like=True):
         Args:
             sigma_radps: the same were they as straight as ways are, and no other one bent like it (rad/s).
         """
-        return math.sqrt(self.bent * sigma_radps**2 + self.shared_rad2ps2)
+        return math.sqrt(self.unsurer) * sigma_radps
 
     def walked(
         self, start_t: float, t: float, moved_m: tuple[float, float], walk_rad2: float
@@ -92,11 +108,9 @@ class StraightLegs(msgspec.Struct, frozen=True, array_like=True):
             walk_rad2: variance that the angle of that frame gains meanwhile (rad²).
 
         Returns:
-            What they have told then, and the bias that a leg tells which is over, or has gone on for long.
+            What they have told then, and the bias that a leg tells beyond what it has told before.
         """
-        leg = self.leg
-        if leg is None:
-            return self._with_leg(Leg(t)), None
+        leg = self.leg or Leg(start_t)
         if start_t > leg.mark_t + physics.CHORD_LONGEST_S or t - start_t > physics.CHORD_LONGEST_S:
             return self._over(leg, t)
         east, north = leg.chord_m[0] + moved_m[0], leg.chord_m[1] + moved_m[1]
@@ -108,23 +122,39 @@ class StraightLegs(msgspec.Struct, frozen=True, array_like=True):
         line = _with_newest(leg)
         if line is not None and _turns(line, facing):
             return self._over(leg, t)
-        leg = Leg(t, (0.0, 0.0), line, (middle_t, facing), leg.way_m + length, leg.walk_rad2)
+        leg = Leg(t, (0.0, 0.0), line, (middle_t, facing), leg.way_m + length, leg.walk_rad2, leg.told)
         if line is None or line.lasted_s < physics.STILL_LONG_S:
-            return self._with_leg(leg), None
+            return self._onward(leg)
         return self._over(leg, t)
 
     def _with_leg(self, leg: Leg) -> Self:
         return msgspec.structs.replace(self, leg=leg)
 
+    def _onward(self, leg: Leg) -> tuple[Self, Bias | None]:
+        """A leg goes on: it tells once it has shown twice as much; what turns faster than gyros do waits."""
+        bias = leg.bias()
+        if bias is None or abs(bias.value) > physics.BIAS_SIGMA_MOST_RADPS:
+            return self._with_leg(leg), None
+        known = bias.sigma**-2
+        more = leg.beyond(bias) if known > physics.STRAIGHT_MORE * leg.told[0] else None
+        told = leg.told if more is None else (known, known * bias.value)
+        return self._with_leg(msgspec.structs.replace(leg, told=told)), more
+
     def _over(self, leg: Leg, t: float) -> tuple[Self, Bias | None]:
         """A leg is over, and another one begins."""
-        after, bias = self._with_leg(Leg(t)), leg.bias()
-        if bias is None or bias.sigma > physics.BIAS_SIGMA_MOST_RADPS:
-            return after, None
-        (one, two, three), known = self.sums, bias.sigma**-2
-        sums = one + known, two + known * bias.value, three + known * bias.value**2
-        curved = abs(bias.value) > physics.BIAS_SIGMA_MOST_RADPS + 2.0 * bias.sigma
-        return type(self)(after.leg, self.number + 1, sums), None if curved else bias
+        bias, more = leg.bias(), None
+        known, product = leg.told
+        if bias is not None:
+            curved = abs(bias.value) > physics.BIAS_SIGMA_MOST_RADPS + 2.0 * bias.sigma
+            more = None if curved else leg.beyond(bias)
+            if curved or more is not None:
+                known = bias.sigma**-2
+                product = known * bias.value
+        if known == 0.0:
+            return self._with_leg(Leg(t)), None
+        one, two, three = self.sums
+        sums = one + known, two + product, three + product**2 / known
+        return type(self)(Leg(t), self.number + 1, sums), more
 
 
 def _with_newest(leg: Leg) -> HeadingLine | None:

@@ -1,5 +1,6 @@
 """What the displacements of one unit tell of its gyro's bias: where its bearer stands, and walks straight."""
 
+import math
 from typing import NamedTuple
 
 from estimator.fusion import physics
@@ -22,12 +23,14 @@ class ToldBias(NamedTuple):
         bias: it.
         noise: how often it is another one.
         since: variance that it has gained since then (rad²/s²).
+        leg_t: what straight legs have told after that epoch is of the same leg; this is beyond it (s).
     """
 
     t: float
     bias: Bias
     noise: Mixture
     since: float = 0.0
+    leg_t: float = math.inf
 
 
 class ToldBiases:
@@ -74,10 +77,12 @@ class ToldBiases:
 
     def walk(self, start_t: float, t: float, moved_m: tuple[float, float], walk_rad2: float) -> None:
         """Walk on: see `StraightLegs.walked`."""
+        leg = self.straight.leg
         self.straight, told = self.straight.walked(start_t, t, moved_m, walk_rad2)
         if told is not None:
-            sigma = self.straight.sigma_radps(told.sigma)
-            self._told.append(ToldBias(t, Bias(told.value, sigma), physics.STRAIGHT_NOISE))
+            bias = Bias(told.value, self.straight.sigma_radps(told.sigma))
+            leg_t = math.inf if leg is None or leg.line is None else leg.line.since_t
+            self._told.append(ToldBias(t, bias, physics.STRAIGHT_NOISE, leg_t=leg_t))
 
     def take(self) -> tuple[ToldBias, ...]:
         """What has been told since this was last asked."""

@@ -124,7 +124,7 @@ def _extend(state: FusionState, step: Step, reading: Displacement, biases: list[
         text = f"{node.node} reported {length:.1f} m at once, faster than anyone runs"
         state.say("outlier", reading.t, node.node, text)
         state.count("outlier")
-    if step.straight.number > straight.number:
+    if step.straight.unsurer != straight.unsurer:
         weigh_anew(state, node, straight, step.straight)
     biases += enter(state, node, increment.biases)
     given = ASSUMED if reading.sigma_m is None else CLAIMED

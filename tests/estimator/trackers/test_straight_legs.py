@@ -13,6 +13,8 @@ from estimator.trackers.kirchhoff import KirchhoffTracker
 
 SURE = 13.8
 """Squared Mahalanobis distance in the plane beyond which one place in a thousand is."""
+HELD = 5.99
+"""The same of one place in twenty."""
 
 
 def reports(way_m: Array, bias_radps: float) -> list[AnyReading]:
@@ -77,6 +79,18 @@ def test_who_walks_along_a_round_corridor_is_not_surely_elsewhere(radius_m: floa
     way_m = radius_m * np.column_stack([np.sin(along_rad), 1.0 - np.cos(along_rad)])
     _, distance2 = shown(reports(way_m, 0.0), way_m[-1])
     assert distance2 < SURE
+
+
+@pytest.mark.parametrize("radius_m", [100.0, 150.0, 250.0])
+@pytest.mark.parametrize("way_m", [200, 400])
+def test_his_ellipse_holds_who_goes_far_along_a_ring_that_turns_as_gyros_do(
+    radius_m: float, way_m: int
+) -> None:
+    """Nothing tells a ring from a gyro: half of the turn is taken for either."""
+    along_rad = np.arange(way_m + 1) / radius_m
+    places_m = radius_m * np.column_stack([np.sin(along_rad), 1.0 - np.cos(along_rad)])
+    _, distance2 = shown(reports(places_m, 0.0), places_m[-1])
+    assert distance2 < HELD
 
 
 def test_who_goes_to_and_fro_in_a_round_corridor_is_where_he_has_gone() -> None:

@@ -21,14 +21,26 @@ def walked(
     since_t: float = 0.0,
     period_s: float = 1.0,
 ) -> tuple[StraightLegs, list[Bias]]:
-    """Somebody walks at 1 m/s, as his unit reports it: which way it faces in each report."""
-    legs, told = legs or StraightLegs(), []
+    """Somebody walks at 1 m/s, as his unit reports it: which way it faces in each report.
+
+    Returns:
+        What his legs have told then, and the bias of each one, with all that it has told of it.
+    """
+    legs, told = legs or StraightLegs(), dict[int, list[Bias]]()
     for i, facing in enumerate(facings_rad):
         start = since_t + period_s * i
         moved = period_s * math.cos(facing), period_s * math.sin(facing)
+        number = legs.number
         legs, bias = legs.walked(start, start + period_s, moved, WALK_RAD2 * period_s)
-        told += [] if bias is None else [bias]
-    return legs, told
+        if bias is not None:
+            told.setdefault(number, []).append(bias)
+    return legs, [together(each) for each in told.values()]
+
+
+def together(told: Iterable[Bias]) -> Bias:
+    """What several readings of one bias say of it."""
+    known, products = np.array([(bias.sigma**-2, bias.value * bias.sigma**-2) for bias in told]).T
+    return Bias(float(products.sum() / known.sum()), float(known.sum() ** -0.5))
 
 
 def leg_of(rate_radps: float, seconds: int = 25, facing_rad: float = 0.0) -> list[float]:
@@ -88,7 +100,9 @@ def test_a_short_leg_tells_nothing(seconds: int) -> None:
 def test_who_walks_round_something_tells_nothing_of_his_gyro() -> None:
     legs, told = walked(leg_of(math.radians(1.3), 120))
     assert not told
-    assert legs.sigma_radps(0.0) > physics.STRAIGHT_SHARED_RADPS, "and what he tells later counts for less"
+    sigma = 0.003
+    later = math.hypot(sigma, physics.STRAIGHT_SHARED_RADPS)
+    assert legs.sigma_radps(sigma) > later, "and what he tells later counts for less"
 
 
 def test_who_stops_ends_a_leg() -> None:
@@ -96,7 +110,8 @@ def test_who_stops_ends_a_leg() -> None:
     for second in range(6):
         legs, bias = legs.walked(25.0 + second, 26.0 + second, (0.0, 0.0), 0.0)
         told += [] if bias is None else [bias]
-    assert [bias.value for bias in told] == pytest.approx([0.002])
+    assert legs.number == 1
+    assert together(told).value == pytest.approx(0.002)
     _, told = walked(leg_of(0.002, 10), legs, since_t=40.0)
     assert not told, "what comes after a halt is another leg"
 
@@ -127,6 +142,36 @@ def test_however_many_legs_tell_a_bias_no_better_than_all_of_them_may_be_bent() 
     variance = told[-1].sigma ** 2 * np.eye(40) + physics.STRAIGHT_SHARED_RADPS**2
     assert information == pytest.approx(float(np.linalg.inv(variance).sum()), rel=1e-3)
     assert information < physics.STRAIGHT_SHARED_RADPS**-2
+
+
+def test_a_leg_that_tells_little_takes_nothing_from_one_that_tells_much() -> None:
+    """Errors of their own and one in common: 1ᵀ (V + c 1 1ᵀ)⁻¹ 1, whatever each of them is."""
+    legs, told = walked([*leg_of(-0.003, 28), *leg_of(-0.003, 18, CORNER), 2.0 * CORNER])
+    variance = np.diag([bias.sigma**2 for bias in told]) + physics.STRAIGHT_SHARED_RADPS**2
+    information = sum(legs.sigma_radps(bias.sigma) ** -2 for bias in told)
+    assert len(told) == 2
+    assert told[1].sigma > 1.5 * told[0].sigma
+    assert information == pytest.approx(float(np.linalg.inv(variance).sum()), rel=0.02)
+
+
+def test_a_leg_tells_while_it_is_under_way_what_it_has_not_told_yet() -> None:
+    _, (half,) = walked(leg_of(-0.003, 18))
+    legs, (whole,) = walked(leg_of(-0.003, 28))
+    assert legs.number == 0, "he is still on it"
+    _, (over,) = walked([*leg_of(-0.003, 28), CORNER])
+    assert half.value == whole.value == over.value == pytest.approx(0.003)
+    assert half.sigma > whole.sigma >= over.sigma
+    shown = legs.leg.bias() if legs.leg is not None else None
+    assert shown is not None
+    assert over.sigma**-2 == pytest.approx(shown.sigma**-2, abs=physics.BIAS_SIGMA_MOST_RADPS**-2)
+
+
+def test_what_seems_to_turn_faster_than_gyros_do_waits_until_the_leg_is_over() -> None:
+    """As somebody does who goes round a tank, before that shows."""
+    _, told = walked(leg_of(math.radians(0.6), 20))
+    assert not told
+    _, (waited,) = walked([*leg_of(math.radians(0.6), 20), 2.0 * CORNER])
+    assert waited.value == pytest.approx(-math.radians(0.6))
 
 
 def test_legs_that_differ_by_more_than_ways_are_bent_by_tell_less() -> None:

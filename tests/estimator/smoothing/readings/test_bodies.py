@@ -19,16 +19,13 @@ WEST_M, NORTH_M, DOES = -60.0, 60.0, 0.5
 GOES_S, STANDS_S = 20, 10
 
 
-def walked(
-    *, turned_rad: float = 0.0, role: Role = "anchor", units: bool = True, goes_s: int = GOES_S
-) -> list[AnyReading]:
-    """He goes east for some time, away from one radio and past another one, and stands.
+def walked(*, turned_rad: float = 0.0, role: Role = "anchor", units: bool = True) -> list[AnyReading]:
+    """He goes east for twenty seconds, away from one radio and past another one, and stands.
 
     Args:
         turned_rad: what his unit faces, against what it says.
         role: of the radio in the west.
         units: he has a unit.
-        goes_s: for how long he goes (s).
     """
     readings: list[AnyReading] = [
         Node(t=0.0, node="west", role=role, position_m=(WEST_M, 0.0, 0.0), sigma_m=0.05),
@@ -37,9 +34,9 @@ def walked(
         if turned_rad == 0.0
         else Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0)),
     ]
-    for second in range(1, goes_s + STANDS_S + 1):
-        t, east_m = float(second), float(min(second, goes_s))
-        step_m = 1.0 if second <= goes_s else 0.0
+    for second in range(1, GOES_S + STANDS_S + 1):
+        t, east_m = float(second), float(min(second, GOES_S))
+        step_m = 1.0 if second <= GOES_S else 0.0
         told = step_m * math.cos(turned_rad), -step_m * math.sin(turned_rad), 0.0
         if units:
             readings.append(Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=told))
@@ -96,7 +93,7 @@ def test_the_window_predicts_each_reading_with_what_bodies_do() -> None:
 
 def test_where_he_faces_is_turned_as_his_units_frame_is() -> None:
     """His unit says that he goes south: radios tell that he goes east."""
-    found = does(problem_of(fused(walked(turned_rad=math.pi / 2.0, goes_s=26))))
+    found = does(problem_of(fused(walked(turned_rad=math.pi / 2.0))))
     assert found["west", RANGE][-1] == pytest.approx(DOES, rel=0.05)
 
 

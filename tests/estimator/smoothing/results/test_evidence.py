@@ -47,11 +47,16 @@ def test_a_straight_leg_holds_who_has_gone_on_after_it() -> None:
     ]
     found = SMOOTHER.evidence([begun, *steps], "ff1")
     assert found is not None
-    (straight,) = [m for m in found.held if m.kind == "straightness"]
-    assert straight.a == "ff1"
-    assert straight.value == pytest.approx(0.0, abs=1e-9)
-    assert straight.share > 0.05
-    assert straight.weight > 0.8
+    straight = [m for m in found.held if m.kind == "straightness"]
+    assert len(straight) == 2, "the leg that is over, and the one that he is on"
+    over, under_way = sorted(m.t for m in straight)
+    assert over == 31.0
+    assert 45.0 < under_way <= 60.0
+    assert max(m.share for m in straight) > 0.05
+    for leg in straight:
+        assert leg.a == "ff1"
+        assert leg.value == pytest.approx(0.0, abs=1e-9)
+        assert leg.weight > 0.8
 
 
 def test_an_anchor_is_held_by_what_was_told_of_it() -> None:
