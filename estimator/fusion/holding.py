@@ -12,7 +12,6 @@ from msgspec.structs import replace
 from estimator.fusion import physics
 from estimator.fusion.entering import base_entry, beginnings, late_start
 from estimator.fusion.memory.hearing import Crossing
-from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.fusion.motion.constant_velocity import move_free
 from estimator.fusion.motion.dead_reckoning import drift_units
@@ -63,13 +62,13 @@ def covered(
         until_t: newest epoch (s).
         unwaited: nodes for whose displacements nothing waits.
     """
-    told_until = _told_until(state)
-    soonest = min(told_until.values(), default=math.inf)
+    told_until, awaited = _told_until(state), _awaited(state, until_t)
+    soonest = min((*told_until.values(), *awaited.values()), default=math.inf)
     if not readings or readings[-1].t <= soonest:
         state.waiting = ()
         return list(readings)
     # None waits for a displacement that should have come long ago.
-    units = {name: max(t, until_t - _wait_s(state.nodes[name])) for name, t in told_until.items()}
+    units = {name: max(t, until_t - state.nodes[name].wait_s) for name, t in told_until.items()} | awaited
     told = bisect_right(readings, min(units.values()), key=EPOCH)
     ready = list(readings[:told])
     waiting: list[AnyHeld] = []
@@ -81,10 +80,14 @@ def covered(
     return ready
 
 
-def _wait_s(node: NodeState) -> float:
-    """For how long readings wait for a unit's next report (s)."""
-    lasted_s = node.report_s if node.report_s <= physics.REPORT_LONGEST_S else 0.0
-    return max(physics.PENDING_S, physics.REPORT_LATE * lasted_s)
+def _awaited(state: FusionState, until_t: float) -> dict[str, float]:
+    """The epoch since when each unit's way is still to be told whose first report is to come, by node (s)."""
+    for name in [name for name, one in state.awaited.items() if one.told_t < until_t]:
+        del state.awaited[name]
+    free = {name for name in state.awaited if name in state.nodes and state.nodes[name].mode == "free"}
+    return {
+        name: max(state.awaited[name].t, state.nodes[name].pose_t) + SAME_EPOCH_S for name in sorted(free)
+    }
 
 
 def _told_until(state: FusionState) -> dict[str, float]:

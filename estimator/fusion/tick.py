@@ -25,7 +25,7 @@ from estimator.fusion.readings.unstated_starts import with_starts
 from estimator.fusion.report import estimate_of
 from estimator.fusion.rows.rows import Single
 from estimator.inertial.samples import AnyFolded, Samples
-from estimator.measurements.displacement import Displacement
+from estimator.measurements.displacement import Awaited, Displacement
 from estimator.measurements.node import LateNode, Node
 from estimator.measurements.position import Position
 from estimator.measurements.retire import Retire
@@ -48,6 +48,9 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
     retired, returned = list[Retire](), list[Node]()
     readings = without_copies(state, readings)
     for reading in readings:
+        if type(reading) is Awaited:
+            state.awaited[reading.node] = reading
+            continue
         if state.called and isinstance(reading, (*HELD, Displacement, Samples)):
             for name in names_of(reading):
                 reentry.re_enter(state, name, reading.t)

@@ -7,6 +7,7 @@ import numpy as np
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.base import Identifier, Reading
+from estimator.measurements.displacement import Awaited
 from estimator.measurements.imu import RATE_MIN_HZ, Imu, end_of
 from estimator.measurements.node import LateNode
 
@@ -45,7 +46,7 @@ class Samples(Reading, tag="samples", frozen=True):
         return np.frombuffer(self.values, dtype=np.float64).reshape(self.count, 6)
 
 
-AnyFolded = AnyReading | Samples | LateNode
+AnyFolded = AnyReading | Samples | LateNode | Awaited
 
 
 def in_pieces(readings: Iterable[AnyReading]) -> Iterator[AnyFolded]:

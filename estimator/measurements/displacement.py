@@ -38,6 +38,18 @@ class Displacement(Reading, tag="displacement", frozen=True):
             raise ValueError("`from_t` is later than `t`: a displacement ends after it starts")
 
 
+class Awaited(Reading, tag="awaited", frozen=True):
+    """That the first report of a unit is still to come: `t` is when it has begun to sum up what that tells.
+
+    Attributes:
+        node: the unit.
+        told_t: epoch of the report, Unix seconds.
+    """
+
+    node: Identifier
+    told_t: EpochSeconds
+
+
 class Moved(NamedTuple):
     """Where units stand after a displacement, with derivatives by where they stood.
 

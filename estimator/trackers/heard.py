@@ -13,9 +13,11 @@ from estimator.fusion.holding import PAIRS, names_of
 from estimator.fusion.memory.state import FusionState
 from estimator.inertial.samples import AnyFolded, in_pieces
 from estimator.measurements import AnyReading
+from estimator.measurements.displacement import Awaited
 from estimator.measurements.imu import Imu
 from estimator.smoothing.first_pass import TICK_S, FirstPass, end_of_tick
 from estimator.smoothing.results.tracks import Lifetimes
+from estimator.trackers.first_reports import FirstReports
 
 LONGEST_S = 86_400.0
 """No incident lasts longer: a reading farther than a day from the others has a wrong epoch."""
@@ -35,6 +37,7 @@ class Heard:
         self._until_t = -math.inf
         self._epochs = array("d")
         self._lifetimes: dict[str, tuple[float, float]] = {}
+        self._first = FirstReports()
         self._early: list[AnyFolded] = []
         self._waiting: list[AnyFolded] = []
 
@@ -53,6 +56,7 @@ class Heard:
             readings: they are, all such as `can_hear` tells.
         """
         self._waiting += in_pieces(readings)
+        self._waiting += [one for one in self._first.awaited(readings) if one.t >= self._until_t]
 
     def fold_ahead(self, newest_t: float) -> None:
         """Fold what is older than the lag, but for what is of another day: its epoch is rather wrong.
@@ -130,6 +134,8 @@ def _extend(lifetimes: dict[str, tuple[float, float]], readings: Sequence[AnyFol
                 since[a] = t
             if b not in since:
                 since[b] = t
+            continue
+        if type(reading) is Awaited:
             continue
         until_t = reading.until_t
         for name in names_of(reading):

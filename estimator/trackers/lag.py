@@ -26,11 +26,14 @@ from estimator.fusion.holding import names_of
 from estimator.fusion.memory.state import FusionState
 from estimator.inertial.samples import AnyFolded, Samples, in_pieces
 from estimator.measurements import AnyReading
+from estimator.measurements.displacement import Awaited
 from estimator.measurements.node import LateNode, Node
 from estimator.smoothing.images.flip_ambiguity import HURRIED
 from estimator.trackers.catch_up import PROMPT_TICKS, CatchUp
 from estimator.trackers.chain import Chain, hurried
+from estimator.trackers.first_reports import FirstReports
 from estimator.trackers.lag_record import LagRecord, Leap
+from estimator.trackers.late_readings import too_late
 
 LEAPS_KEPT = 8
 
@@ -58,6 +61,7 @@ class Lag:
         self._readings: dict[int, list[AnyFolded]] = {}
         self._sure = Chain([(-1, state)])
         self._hurry = CatchUp()
+        self._first = FirstReports()
         self._shown: Chain | None = None
         self._behind = False
         self._notices: dict[int, list[Notice]] = {}
@@ -74,7 +78,7 @@ class Lag:
         lag._readings = {tick: list(readings) for tick, readings in record.readings}
         first = len(record.checkpoints)
         lag._sure = Chain(list(zip(record.checkpoints, states[:first], strict=True)))
-        lag._hurry = record.hurry
+        lag._hurry, lag._first = record.hurry, record.first
         if record.shown:
             lag._shown = Chain(list(zip(record.shown, states[first:], strict=True)), HURRIED)
         lag._notices, lag._given, lag._loose = record.notices, record.given, record.loose
@@ -96,6 +100,7 @@ class Lag:
             dict(self.late),
             list(self.leaps),
             msgspec.structs.replace(self._hurry),
+            FirstReports(dict(self._first.since_t)),
             [tick for tick, _ in shown],
         )
         return record, [state for _, state in (*sure, *shown)]
@@ -141,9 +146,18 @@ class Lag:
             together_t, together = until_t, self._readings[tick]
             together.append(reading)
             self._hurry.hear(names_of(reading)[0], tick)
+        for awaited in self._first.awaited(readings):
+            self._await(awaited)
         for node, newest in missed.items():
-            text = _too_late(self.late[node], self.lag_s) + self._why_late(newest.until_t)
+            text = too_late(self.late[node], self.lag_s, self.leaps, newest.until_t)
             self._loose.append(Notice(code="too_late", t=newest.t, node=node, text=text))
+
+    def _await(self, awaited: Awaited) -> None:
+        """Have it known when a unit's first report began that it was to come; it makes no reading late."""
+        if self.newest_t is not None and awaited.t >= self.newest_t - self.lag_s:
+            tick = tick_of(awaited.t)
+            self._make_room(tick, tick_of(self.newest_t), late=False)
+            self._readings[tick].append(awaited)
 
     def _take_late(self, reading: Node, now_t: float) -> None:
         """Take an introduction that came too late as of the oldest epoch that can still be folded."""
@@ -166,25 +180,17 @@ class Lag:
         self.newest_t = t
         return t
 
-    def _why_late(self, t: float) -> str:
-        """Whose reading made an epoch (s) too late, where one alone did."""
-        for leap in self.leaps:
-            since_t = -math.inf if leap.from_t is None else leap.from_t - self.lag_s
-            if since_t <= t < leap.to_t - self.lag_s:
-                by = "" if leap.from_t is None else f" by {leap.to_t - leap.from_t:.0f} s"
-                return f": a reading of {leap.node} put time forward{by} to t = {leap.to_t:.0f}"
-        return ""
-
-    def _make_room(self, tick: int, now: int) -> None:
+    def _make_room(self, tick: int, now: int, late: bool = True) -> None:
         """Roll back to before a tick that readings are of, where they come late, and make it one of those.
 
         Args:
             tick: of the readings.
             now: tick of incident time, with them.
+            late: where they are, what is folded anew counts towards a hurry.
         """
         newest = self._ticks[-1] if self._ticks else tick
         self._hurry.advance(now, max(newest, tick))
-        if self._hurry.note_reading(tick, newest) or not self._hurry.hurrying:
+        if not late or self._hurry.note_reading(tick, newest) or not self._hurry.hurrying:
             self._shown = None
         self._sure.roll_back(tick)
         if self._shown is not None:
@@ -292,9 +298,3 @@ class Lag:
                 taken.extend(fresh)
                 self._given.setdefault(tick, []).extend(fresh)
         return taken
-
-
-def _too_late(count: int, lag_s: float) -> str:
-    """What is said of a node: a notice takes the place of the one before, so that it counts all so far."""
-    came = "1 reading so far came" if count == 1 else f"{count} readings so far came"
-    return f"{came} more than {lag_s:g} s late and {'is' if count == 1 else 'are'} not fused"

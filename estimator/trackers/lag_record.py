@@ -5,6 +5,7 @@ import msgspec
 from estimator.estimate import Notice
 from estimator.inertial.samples import AnyFolded
 from estimator.trackers.catch_up import CatchUp
+from estimator.trackers.first_reports import FirstReports
 
 
 class Leap(msgspec.Struct, frozen=True, array_like=True):
@@ -36,6 +37,7 @@ class LagRecord(msgspec.Struct, frozen=True, array_like=True):
         late: see `Lag`.
         leaps: see `Lag`.
         hurry: see `CatchUp`.
+        first: see `FirstReports`.
         shown: tick of each state kept of the chain in a hurry; they come after the others.
     """
 
@@ -50,4 +52,5 @@ class LagRecord(msgspec.Struct, frozen=True, array_like=True):
     late: dict[str, int] = msgspec.field(default_factory=dict)
     leaps: list[Leap] = msgspec.field(default_factory=list)
     hurry: CatchUp = msgspec.field(default_factory=CatchUp)
+    first: FirstReports = msgspec.field(default_factory=FirstReports)
     shown: list[int] = msgspec.field(default_factory=list)

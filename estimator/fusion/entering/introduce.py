@@ -206,7 +206,7 @@ def initial_turn(node_heading_rad: float | None, unit_heading_rad: float | None)
     return 0.0
 
 
-def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float) -> bool:
+def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float, unsure_m2: Array) -> bool:
     """A breadcrumb lies where its bearer stood: an edge p − p_by = offset with an honest sigma.
 
     Args:
@@ -215,6 +215,7 @@ def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float)
         by: the responder, decided.
         where_m: where `by` stood at `t`, 3 (m).
         t: epoch of the drop.
+        unsure_m2: variances of that for what his unit has not told, 3 (m²).
 
     Returns:
         Whether the breadcrumb may be dropped at all.
@@ -237,7 +238,8 @@ def drop(state: FusionState, name: str, by: NodeState, where_m: Array, t: float)
     place(state, node, t, where_m, wide)
     state.ledger.add("drops", t, node.index, by.index)
     start = state.graph.rows(state.nodes[name].position).start
-    information = np.array([s**-2 for s in physics.DROP_SIGMA_M])
+    known = np.array([s**-2 for s in physics.DROP_SIGMA_M])
+    information = known / (1.0 + known * unsure_m2)
     axes = np.arange(3)
     if by.mode == "fixed":
         columns, jacobian = (start + axes)[:, None], np.ones((3, 1))

@@ -19,6 +19,7 @@ from estimator.graph.record import ArrayRecord, pack, unpack
 from estimator.graph.variable import Variable
 from estimator.inertial.record import NavigationRecord, navigation_of
 from estimator.inertial.record import record_of as navigation_record_of
+from estimator.measurements.displacement import Awaited
 from estimator.measurements.node import Node
 
 
@@ -41,6 +42,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     called: dict[str, Node]
     sightings: dict[str, int]
     waiting: tuple[AnyHeld, ...]
+    awaited: dict[str, Awaited]
     noise: dict[str, LearnedNoise]
     links: tuple[list[tuple[str, str, str]], ArrayRecord]
     reference: tuple[float, float] | None
@@ -88,6 +90,7 @@ def record_of(state: FusionState) -> FusionRecord:
         dict(state.called),
         dict(state.sightings),
         state.waiting,
+        dict(state.awaited),
         dict(state.noise),
         (list(state.links.numbers), pack(state.links.table)),
         state.reference,
@@ -136,7 +139,7 @@ def state_of(record: FusionRecord) -> FusionState:
     state.graph = Kirchhoff.of(record.variables, matrix, vector, reference)
     state.nodes = {n.node: n for n in record.nodes}
     state.ended, state.called = {n.index: n for n in record.ended}, record.called
-    state.sightings, state.waiting = record.sightings, record.waiting
+    state.sightings, state.waiting, state.awaited = record.sightings, record.waiting, record.awaited
     state.noise, state.reference, state.counts = record.noise, record.reference, record.counts
     state.said, state.tried = dict.fromkeys(record.said), record.tried
     links, newest = record.links

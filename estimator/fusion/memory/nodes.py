@@ -7,6 +7,7 @@ from typing import Literal
 import msgspec
 
 from estimator.estimate import Covariance6, Vector3
+from estimator.fusion import physics
 from estimator.fusion.images import Alternative
 from estimator.fusion.learned.calibration import UNTOLD, Told
 from estimator.fusion.learned.report_period import Cadence
@@ -153,6 +154,12 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     def decided(self) -> bool:
         """Whether readings can be held against its position."""
         return self.mode in ("fixed", "static", "unit", "free")
+
+    @property
+    def wait_s(self) -> float:
+        """For how long readings wait for its unit's next report (s)."""
+        lasted_s = self.report_s if self.report_s <= physics.REPORT_LONGEST_S else 0.0
+        return max(physics.PENDING_S, physics.REPORT_LATE * lasted_s)
 
     @property
     def doubt_up_m2(self) -> float:

@@ -25,6 +25,7 @@ from estimator.graph.kirchhoff import Kirchhoff
 from estimator.inertial.progress import Navigation
 from estimator.inertial.zaru import RESTED_RADPS
 from estimator.measurements import AnyReading
+from estimator.measurements.displacement import Awaited
 from estimator.measurements.node import Node, Role
 
 AnyHeld = AnyReading | Crossing
@@ -42,6 +43,7 @@ class FusionState:
         called: introductions of retired nodes of which nothing has been reported since, by node.
         sightings: how many each undecided node has.
         waiting: readings whose epoch no displacement has covered yet.
+        awaited: units whose first reports are still to come, by node.
         noise: what was learned of each technology's noise.
         links: the newest reading of each technology between two nodes.
         reference: newest air pressure of a base (Pa), and how high that base stands (m).
@@ -89,6 +91,7 @@ class FusionState:
         self.called: dict[str, Node] = {}
         self.sightings: dict[str, int] = {}
         self.waiting: tuple[AnyHeld, ...] = ()
+        self.awaited: dict[str, Awaited] = {}
         self.noise: dict[str, LearnedNoise] = {}
         self.links = Links()
         self.reference: tuple[float, float] | None = None
@@ -134,6 +137,7 @@ class FusionState:
         twin.counts, twin.said, twin.tried = dict(self.counts), dict(self.said), dict(self.tried)
         twin.ended, twin.called, twin.listeners = dict(self.ended), dict(self.called), dict(self.listeners)
         twin.navigations, twin.notices = dict(self.navigations), []
+        twin.awaited = dict(self.awaited)
         twin.delayed, twin.suspects = dict(self.delayed), dict(self.suspects)
         twin.altimeters, twin.receivers = dict(self.altimeters), dict(self.receivers)
         twin.clocks, twin.mistold, twin.bodies = dict(self.clocks), dict(self.mistold), dict(self.bodies)

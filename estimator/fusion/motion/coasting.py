@@ -38,6 +38,25 @@ def onward_m(trail: Sequence[Mark], span_s: float, since_s: float) -> Vector3:
     return share * e, share * n, share * u
 
 
+def went_on_m2(span_s: float, told_s: float) -> float:
+    """Variance along each axis of how far somebody goes on, of whom a report told the mean velocity (m²).
+
+    What is told of some seconds as a sum tells little of how he went at their end: he may have turned a
+    corner in between. He is taken to go on at that velocity as in `silence.went_on`; the variance about it is
+    that of the same process, of which the mean over a time is known instead of its value.
+
+    Args:
+        span_s: for how long he goes on (s).
+        told_s: for how long the report lasted (s).
+    """
+    speed_mps, memory_s = physics.SILENT_SPEED_MPS, physics.UNHEARD_MEMORY_S
+    forgotten, before = -math.expm1(-span_s / memory_s), -math.expm1(-told_s / memory_s)
+    share = went_on(span_s)[0] / told_s
+    onward = gone_m2(speed_mps, memory_s, span_s, 0.0)
+    told = gone_m2(speed_mps, memory_s, told_s, 0.0)
+    return onward + share**2 * told - 2.0 * share * (speed_mps * memory_s) ** 2 * forgotten * before
+
+
 def mark_after(last: Mark, t: float, delta_m: Vector3) -> Mark:
     """The mark of who has gone `delta_m` (m) since the last one, at `t` (s)."""
     _, e, n, u = last

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
@@ -12,9 +13,9 @@ from estimator.fusion import physics
 from estimator.fusion.memory.ledger import UNSEEN
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m
+from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m, went_on_m2
 from estimator.fusion.motion.recent_places import Mark
-from estimator.fusion.motion.silence import SILENT_S, unplaced_m2
+from estimator.fusion.motion.silence import SILENT_S, unplaced_m2, went_on
 from estimator.fusion.motion.steps import Noise, Step, sum_of, unseen_noise
 from estimator.graph.dense import Array, Indices
 from estimator.graph.filter_kernels import advance
@@ -22,6 +23,8 @@ from estimator.measurements.displacement import move
 
 FLOOR = (1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12)
 STOOD: Vector3 = (0.0, 0.0, 0.0)
+SELDOM_S = 1.5
+"""Of who tells more than a stride at once nobody knows how he went at the end of it."""
 
 
 def advance_units(state: FusionState, steps: Sequence[Step]) -> None:
@@ -116,6 +119,59 @@ def go_on(state: FusionState, until: Mapping[str, float]) -> None:
         advance_units(state, steps)
     for step in steps:
         state.nodes[step.node.node] = step.after()
+
+
+class Pace(NamedTuple):
+    """How the bearer of a unit goes that sums up for seconds what it tells.
+
+    Attributes:
+        pace_mps: mean velocity in its newest report, in the unit's frame: east, north, up (m/s).
+        told_t: epoch of that report (s).
+        lasted_s: for how long it lasted (s).
+    """
+
+    pace_mps: Vector3
+    told_t: float
+    lasted_s: float
+
+
+def paces(state: FusionState) -> dict[str, Pace]:
+    """How those go whose units report seldom, and who are not silent but report as ever, by node."""
+    found = {}
+    for name, node in state.nodes.items():
+        seldom = node.mode == "unit" and not node.raw and node.report_s > SELDOM_S
+        if not seldom or node.pose_t != node.unit_t or len(node.trail) < 2:
+            continue
+        found[name] = Pace(Step(node).pace_mps(), node.pose_t, node.report_s)
+    return found
+
+
+def go_on_at(state: FusionState, until: Mapping[str, float], known: Mapping[str, Pace]) -> None:
+    """Let bearers go on at their pace, up to epochs for which their units' next reports wait.
+
+    What is heard on the way tells how he goes: each part of it adds its own variance.
+
+    Args:
+        state: the fusion.
+        until: the epoch, by node.
+        known: their paces, of others as well.
+    """
+    moves = []
+    for name, t in until.items():
+        node, pace = state.nodes[name], known.get(name)
+        if pace is None or not node.pose_t < t <= pace.told_t + node.wait_s:
+            continue
+        since_s, until_s = node.pose_t - pace.told_t, t - pace.told_t
+        along_s = went_on(until_s)[0] - went_on(since_s)[0]
+        across = went_on_m2(until_s, pace.lasted_s) - went_on_m2(since_s, pace.lasted_s)
+        e, n, u = (along_s * each for each in pace.pace_mps)
+        delta_m = e, n, u
+        moves.append((node, delta_m, until_s - since_s, (across, across, 0.1 * across, 0.0, 0.0, 0.0)))
+        marks = node.trail or ((node.pose_t, 0.0, 0.0, 0.0),)
+        trail = (*marks, mark_after(marks[-1], t, delta_m))
+        state.nodes[name] = replace(node, pose_t=t, trail=trail)
+    if moves:
+        advance_by(state, moves)
 
 
 def was_silent(node: NodeState) -> bool:

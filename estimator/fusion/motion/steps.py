@@ -196,13 +196,13 @@ class Step:
         climb_m2, self._unseen_up_m2 = self._unseen_up_m2, 0.0
         return climb_m2
 
-    def after(self) -> NodeState:
-        """The unit after the step."""
+    def after(self, trail_s: float = TRAIL_S) -> NodeState:
+        """The unit after the step, with its way for so long at least (s)."""
         node, marks, t = self.node, self._marks, self._pose_t
         if not self.taken:
             return node
         oldest, last = 0, len(marks) - 1
-        while oldest < last and marks[oldest][0] < t - TRAIL_S:
+        while oldest < last and marks[oldest][0] < t - trail_s:
             oldest += 1
         return replace(
             node,

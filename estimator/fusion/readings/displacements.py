@@ -13,7 +13,7 @@ from estimator.fusion.entering.replaced_unit import begin_frame, framed
 from estimator.fusion.memory.ledger import ASSUMED, CLAIMED
 from estimator.fusion.memory.state import Count, FusionState
 from estimator.fusion.motion.dead_reckoning import advance_units
-from estimator.fusion.motion.steps import Step, start_of
+from estimator.fusion.motion.steps import TRAIL_S, Step, start_of
 from estimator.fusion.readings.gyro_biases import enter, weigh_anew
 from estimator.fusion.rows.rows import Single
 from estimator.inertial.displacement import InertialDisplacement
@@ -45,8 +45,15 @@ def move_units(state: FusionState, readings: Sequence[Displacement], biases: lis
     moving = [step for step in steps.values() if step.taken]
     if moving:
         advance_units(state, moving)
+    trail_s = _waited_s(state)
     for name, step in steps.items():
-        state.nodes[name] = step.after()
+        state.nodes[name] = step.after(trail_s)
+
+
+def _waited_s(state: FusionState) -> float:
+    """For how long readings may wait for anybody: so long the ways of who is at their other ends are kept."""
+    waits = [node.wait_s for node in state.nodes.values() if node.mode == "unit" and not node.raw]
+    return max((TRAIL_S, *waits, *(one.told_t - one.t for one in state.awaited.values())))
 
 
 def set_aside(state: FusionState, name: str, t: float) -> None:

@@ -5,6 +5,7 @@ import numpy as np
 from estimator.fusion.entering import base_entry, introduce, reentry
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.recent_places import offset_of
+from estimator.fusion.readings.between_reports import unsure_m2
 from estimator.measurements.drop import Drop
 from estimator.measurements.node import MOVING_ROLES
 
@@ -29,6 +30,7 @@ def hold(state: FusionState, reading: Drop) -> bool:
     if crumb is not None and crumb.mode == "retired" and crumb.role not in (*MOVING_ROLES, "base"):
         # It was picked up, and is dropped again.
         reentry.begin_anew(state, crumb, crumb.role, reading.t)
-    done = introduce.drop(state, reading.node, by, where, reading.t)
+    unsure = unsure_m2(by, reading.t) if by.moving else np.zeros(3)
+    done = introduce.drop(state, reading.node, by, where, reading.t, unsure)
     state.count("fused" if done else "not_fused")
     return done

@@ -18,8 +18,10 @@ from estimator.fusion.memory.hearing import Crossing
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.long_displacements import STRAIGHT_S
 from estimator.fusion.motion.recent_places import Mark, TrailEnd, end_of, table_of_marks
 from estimator.fusion.motion.silence import SILENT_S
+from estimator.fusion.readings.between_reports import widen
 from estimator.fusion.readings.impossible_ranges import is_impossible
 from estimator.fusion.readings.pair_rows import PAIR, Technology, pair_rows
 from estimator.fusion.readings.repeated_ranges import is_repeated
@@ -137,6 +139,10 @@ class Pairs:
         )
         state.ledger.extend("pairs", made.entered)
         self.epochs = made.epochs
+        named = zip(self._ends, self._named.values(), strict=True)
+        ends = [(end.start, node) for end, (node, *_) in named if node.report_s > STRAIGHT_S]
+        if ends:
+            widen(made.table, made.epochs, state.graph.reference, ends)
         return made.table
 
     def _covariance(self) -> Array:

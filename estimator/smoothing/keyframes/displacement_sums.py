@@ -1,6 +1,7 @@
 """Displacements summed up along a unit's way, and what of them lies between any two epochs."""
 
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -8,13 +9,11 @@ import numpy as np
 from numba import njit
 
 from estimator.fusion.memory.ledger import ASSUMED, GIVEN, UNSEEN
-from estimator.fusion.motion.long_displacements import STRAIGHT_S
+from estimator.fusion.motion.long_displacements import STRAIGHT_S, bridged_m2
 from estimator.fusion.motion.silence import wandered_m2
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 
-BRIDGED_M_PER_ROOT_S = 1.0
-"""A way over a longer time than `STRAIGHT_S` is a random walk between its ends."""
 SUMS = 12
 """Displacement 3, its first moment 3, variances 5, length."""
 LENGTH = 11
@@ -50,19 +49,13 @@ class Way:
         self.marks, self.sums = summed(begin_t, steps, *factors)
 
     def bridged(self, t: Array) -> Array:
-        """Variance of where it was at `t`, m (m²), inside a displacement over a long time.
+        """Variance of where it was at `t`, m (m²), inside a displacement over a long time."""
+        return bridged_m2(self.marks, t)
 
-        Only its two ends are known: between them the bearer may have walked anywhere, a Brownian bridge.
-        """
-        right = np.clip(np.searchsorted(self.marks, t, side="left"), 1, max(len(self.marks) - 1, 1))
-        if len(self.marks) == 1:
-            return np.zeros(len(t))
-        before, after = self.marks[right - 1], self.marks[right]
-        span = after - before
-        inside = (span > STRAIGHT_S) & (t > before) & (t < after)
-        return np.where(
-            inside, BRIDGED_M_PER_ROOT_S**2 * (t - before) * (after - t) / np.maximum(span, 1e-9), 0.0
-        )
+    @cached_property
+    def bridges(self) -> bool:
+        """Whether any of its displacements is over a long time."""
+        return bool((np.diff(self.marks) > STRAIGHT_S).any())
 
     def between(self, since: Array, until: Array) -> Array:
         """What lies between epochs, m × 12, moments from `since` on; silence adds what it lets wander."""

@@ -20,6 +20,7 @@ from estimator.smoothing.keyframes.ends import FREE, UNIT, faced, place_ends
 from estimator.smoothing.keyframes.ground import ground_of
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.unknowns import Unknowns
+from estimator.smoothing.readings.between_reports import widened
 from estimator.smoothing.readings.bodies import ahead_in
 from estimator.smoothing.readings.fix_speeds import fix_speeds
 from estimator.smoothing.readings.linearisation import (
@@ -108,11 +109,10 @@ class Rows:
         self.shift: Array = np.zeros(len(self.nominal))
         self.sigma: Array = self.nominal.copy()
         self.told: Array = self.nominal
-        self._alone: Array = self.nominal
+        self._alone, self._bearings = self.nominal, found.bearings
         self._usual_noise: Array = self.noise
         self._white, self._common = self.nominal**2, np.zeros(len(self.nominal))
-        self._inside, self._strongest, self._unsure_m2 = found.inside, found.strongest, found.unsure_m2
-        self._bearings = found.bearings
+        self._inside, self._strongest, self._unsure_m2 = found.inside, found.strongest, widened(layout, found)
         speeds = fix_speeds(self.singles, found.readings.off[:, 1], ledger.table("poses"))
         ahead = ahead_in(layout, ground, found.readings, self.pairs, self.slab)
         self._readings = found.readings._replace(speed=speeds, ahead=ahead)

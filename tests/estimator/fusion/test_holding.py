@@ -7,6 +7,7 @@ from estimator.fusion import physics
 from estimator.fusion.holding import parts_of
 from estimator.fusion.memory.ledger import Ledger
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.recent_places import offset_of
 from estimator.fusion.tick import fold_tick
 from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude, Pressure
@@ -145,3 +146,23 @@ def test_what_waits_for_a_unit_that_fell_silent_is_held_at_last() -> None:
     waits_s = physics.REPORT_LATE * 6.0
     assert [reading.t for reading in state.waiting] == [t for t in range(7, 20) if t > 19.0 - waits_s]
     assert len(state.ledger.table("pairs")) == 13 - len(state.waiting)
+
+
+def test_ways_are_remembered_for_as_long_as_readings_wait_for_anybody() -> None:
+    """A range between two of a crew is held when the slower unit reports: where was the other one then?"""
+    state = FusionState()
+    begins = [
+        Node(t=0.0, node=name, role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.1)
+        for name in ("ff1", "ff2")
+    ]
+    fold_tick(state, 0.5, [Node(t=0.0, node="base", role="base"), *begins])
+    for second in range(1, 31):
+        t = float(second)
+        told: list[AnyReading] = [
+            Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=(1.0, 0.0, 0.0)),
+        ]
+        if second % 15 == 0:
+            told.append(Displacement(t=t, from_t=t - 15.0, node="ff2", delta_m=(15.0, 0.0, 0.0)))
+        fold_tick(state, t, told)
+    assert state.nodes["ff1"].trail[0][0] <= 15.0
+    assert offset_of(state, state.nodes["ff1"], 16.0)[0] == pytest.approx(-14.0, abs=0.1)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from estimator.estimate import NodeEstimate
-from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m
+from estimator.fusion import physics
+from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m, went_on_m2
 from estimator.fusion.motion.silence import went_on
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
@@ -73,3 +74,27 @@ def test_a_boot_half_of_whose_readings_are_lost_is_where_its_ellipse_says(each: 
     assert shown[-1].position_m is not None
     way_m = gait.place_m[-1][0]
     assert math.dist(shown[-1].position_m, true_m(gait, shown[-1].t)) < (0.4 if each == 100 else 0.25) * way_m
+
+
+def test_of_whom_a_report_told_a_moment_he_goes_on_as_one_whose_velocity_is_known() -> None:
+    for span_s in (1.0, 3.0, 8.0):
+        assert went_on_m2(span_s, 1e-3) == pytest.approx(went_on(span_s)[1], rel=1e-2)
+        assert went_on_m2(span_s, 5.0) > 1.2 * went_on(span_s)[1]
+    assert went_on_m2(0.0, 5.0) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(("span_s", "told_s"), [(2.0, 5.0), (6.0, 8.0)])
+def test_how_far_he_goes_on_of_whom_only_a_mean_is_told_scatters_as_foretold(
+    span_s: float, told_s: float
+) -> None:
+    """Velocities that are forgotten with time (Ornstein and Uhlenbeck 1930), drawn in steps."""
+    chance, step_s = np.random.default_rng(1), 0.05
+    keep = math.exp(-step_s / physics.UNHEARD_MEMORY_S)
+    speed_mps = chance.normal(0.0, physics.SILENT_SPEED_MPS, 40_000)
+    told_m, onward = np.zeros(len(speed_mps)), np.zeros(len(speed_mps))
+    for k in range(round((told_s + span_s) / step_s)):
+        (told_m if k * step_s < told_s - 1e-9 else onward)[:] += speed_mps * step_s
+        turned = chance.normal(0.0, physics.SILENT_SPEED_MPS * math.sqrt(1.0 - keep**2), len(speed_mps))
+        speed_mps = keep * speed_mps + turned
+    off_m = onward - told_m / told_s * went_on(span_s)[0]
+    assert went_on_m2(span_s, told_s) == pytest.approx(float(off_m.var()), rel=0.05)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from estimator.fusion import physics
-from estimator.fusion.motion.long_displacements import RATE_M2_PER_S, turned_m2, walked_m
+from estimator.fusion.motion.long_displacements import RATE_M2_PER_S, alike, bridged_m2, turned_m2, walked_m
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
@@ -96,3 +96,23 @@ def test_who_comes_back_from_a_silent_search_is_shown_as_unsure_as_his_unit_leav
         squared.append(squared_error(shown(tracker), place))
     assert max(squared) < SURE
     assert 0.5 < float(np.mean(squared)) / 2.0 < 1.5
+
+
+def test_a_place_inside_a_long_displacement_is_that_of_a_brownian_bridge() -> None:
+    marks_t = np.array([0.0, 2.0, 10.0, 11.0])
+    times = np.array([-1.0, 0.0, 1.0, 2.0, 4.0, 6.0, 10.0, 10.5, 12.0])
+    assert bridged_m2(marks_t, times).tolist() == [0.0, 0.0, 0.0, 0.0, 1.5, 2.0, 0.0, 0.0, 0.0]
+    assert bridged_m2(marks_t[:1], times).tolist() == [0.0] * len(times)
+
+
+def test_however_many_readings_share_a_way_that_nobody_knows_together_they_tell_no_more_than_it_allows() -> (
+    None
+):
+    """Their average is off by as much as the average of a bridge about its chord: q T / 12."""
+    marks_t, span_s, noise_m2 = np.array([0.0, 8.0]), 8.0, 1.0
+    for count in (8, 40, 400):
+        times = span_s / 3.0 + (np.arange(count) + 0.5) * span_s / 3.0 / count
+        told = 1.0 / (noise_m2 + alike(marks_t, times) * bridged_m2(marks_t, times))
+        # Half of them tell of one axis.
+        assert 1.0 / (0.5 * told.sum()) > span_s / 12.0
+    assert alike(marks_t, np.array([1.0, 9.0])).tolist() == [1.0, 1.0]
