@@ -49,6 +49,7 @@ from estimator.smoothing.changes.track_fit import RangedTrack, fit_track
 from estimator.smoothing.keyframes.displacement_sums import Way, ways_of
 from estimator.smoothing.keyframes.ends import Table, faced, place_ends
 from estimator.smoothing.keyframes.ground import Ground, Nodes
+from estimator.smoothing.keyframes.losses import Losses, mark_heard
 from estimator.smoothing.keyframes.walks import STATES, dead_reckon, inverses, misfit, reckon, unit_motion
 from estimator.smoothing.learning.delay_scores import (
     PROBES,
@@ -150,7 +151,7 @@ def _warm_chain() -> None:
     place = np.zeros((1, 3))
     end = Table(slab, np.zeros((1, STATES), dtype=np.int64), place, place, place, one)
     place_ends(end, x)
-    triple = np.zeros((1, 3), dtype=np.int64)
+    four = np.zeros((1, 4), dtype=np.int64)
     pair, no = np.zeros((1, 2), dtype=np.int64), np.zeros(1, dtype=np.bool_)
     way = Way(0.0, between, (1.0, 1.0))
     way.between(one, one)
@@ -158,10 +159,12 @@ def _warm_chain() -> None:
         Nodes(slab, slab, slab, place), np.arange(2.0), np.zeros((2, 1)), pair, ways_of([0], [way])
     )
     heard, read, laid = (np.zeros((1, len(COLUMNS[name]))) for name in ("pairs", "singles", "drops"))
-    found = window_readings(LedgerRows(heard, read, laid), 0.0, ground, pair, no, slab)
+    lost = Losses(slab, slab, 0.0, 1.0, np.zeros((1, 1, 1), dtype=np.int64))
+    mark_heard(heard, 0.0, lost)
+    found = window_readings(LedgerRows(heard, read, laid), 0.0, ground, pair, lost, no, slab)
     ahead(heard, slab, ground, no, states, place)
     rows = found.rows
-    readings = Readings(slab, one, one, triple, one, end, end, slab, one, pair, one, end, end, end, slab)
+    readings = Readings(slab, one, one, four, one, one, end, end, slab, one, pair, one, end, end, end, slab)
     jacobian, numbers = np.zeros((5, ANY)), faced(x, slab)
     residuals(readings, numbers, 0, 5, np.zeros(5))
     jacobians(readings, numbers, 0, 5, jacobian)

@@ -43,6 +43,7 @@ def hand_back(state: FusionState, layout: Layout, solved: Solution, matrix: Arra
         if variable.kind in TECHNOLOGIES:
             start = layout.width + layout.technologies[technology_key(state, variable)]
             columns[variable] = start + np.arange(DIMENSION[variable.kind])
+    gone.append(layout.width + np.array([one.column for one in layout.lost.values()], dtype=np.intp))
     order = [v for v in graph.starts if v in columns]
     if len(order) != len(graph.starts):
         raise ValueError("the window does not hold all that the filter holds")

@@ -5,8 +5,10 @@ import numpy as np
 from estimator.fusion.memory.prior import SIZES, Key, Prior
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Indices
+from estimator.graph.kirchhoff import marginalised
 from estimator.graph.variable import TECHNOLOGIES
 from estimator.smoothing.keyframes.layout import technology_key
+from estimator.smoothing.keyframes.losses import going_on
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.gauge_turn import turned
 from estimator.smoothing.problem.newton import Problem
@@ -62,12 +64,18 @@ def trim(problem: Problem, solved: Solution) -> tuple[Prior, float] | None:
     for key, start in layout.technologies.items():
         keys.append(key)
         at.append(layout.width + np.arange(start, start + SIZES[key[0]]))
+    kept = going_on(layout.lost, float(layout.grid[cut]))
+    keys += kept
+    at += [np.array([layout.width + layout.lost[key].column]) for key in kept]
+    over = [layout.width + one.column for key, one in layout.lost.items() if key not in kept]
     chosen = np.concatenate(at) if at else np.zeros(0, dtype=np.intp)
     here = np.concatenate(
         [solved.x[cut * layout.width : (cut + 1) * layout.width], solved.x[layout.length * layout.width :]]
     )
-    matrix = left.matrix[np.ix_(chosen, chosen)]
-    prior = Prior(tuple(keys), matrix, left.vector[chosen], here[chosen], epochs)
+    matrix, vector = left.matrix[np.ix_(chosen, chosen)], left.vector[chosen]
+    if over:
+        matrix, vector = marginalised(left.matrix, left.vector, np.array(over, dtype=np.intp), chosen)
+    prior = Prior(tuple(keys), matrix, vector, here[chosen], epochs)
     return prior, float(layout.grid[cut])
 
 

@@ -142,7 +142,10 @@ def _hand_back(state: FusionState, judged: JudgedImages, mountings: Sequence[Mod
 
 def _remember(state: FusionState, judged: JudgedImages, trimmed: tuple[Prior, float] | None) -> None:
     """Keep where everyone was; of what leaves the window, where it has become long, only a prior."""
-    keep_keyframes(state, judged.problem.layout, judged.solved.x)
+    layout, x = judged.problem.layout, judged.solved.x
+    keep_keyframes(state, layout, x)
+    border = x[layout.length * layout.width :]
+    state.lost_db = {number: float(border[one.column]) for (_, number), one in layout.lost.items()}
     state.prior = judged.problem.prior
     if trimmed is not None:
         state.prior, state.window_t = trimmed

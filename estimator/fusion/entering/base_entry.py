@@ -187,6 +187,7 @@ def end_way(state: FusionState, node: NodeState) -> None:
         heading_rad=node.heading_rad,
         heading_sigma_rad=node.heading_sigma_rad,
         device=node.device,
+        crew=node.crew,
         device_told_t=node.device_told_t,
         introduced_t=node.introduced_t,
         whole_t=node.whole_t,

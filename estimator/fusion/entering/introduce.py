@@ -49,6 +49,8 @@ def introduce(state: FusionState, reading: Node) -> bool:
         node = replace(node, heading_sigma_rad=reading.heading_sigma_rad)
     if reading.device is not None:
         node = replace(node, device=reading.device, device_told_t=reading.t)
+    if reading.crew is not None:
+        node = replace(node, crew=reading.crew)
     if reading.position_m is not None:
         node = replace(node, place_told_t=reading.t)
     state.nodes[node.node] = node

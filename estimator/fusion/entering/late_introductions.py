@@ -66,6 +66,7 @@ def _lasting(known: NodeState | None, reading: LateNode) -> Node:
         heading_rad=reading.heading_rad if place else None,
         heading_sigma_rad=reading.heading_sigma_rad if place else None,
         device=reading.device if device else None,
+        crew=reading.crew if known is None or known.crew is None else None,
     )
 
 

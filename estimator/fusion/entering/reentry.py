@@ -63,5 +63,11 @@ def begin_anew(state: FusionState, known: NodeState, role: Role, t: float) -> No
     # Where it was is nowhere near: what radios heard of it then tells of no reach.
     state.listeners = {a: listener.without(name) for a, listener in state.listeners.items()}
     state.nodes[name] = NodeState(
-        node=name, role=role, named=known.named, t=t, index=state.number(name), introduced_t=t
+        node=name,
+        role=role,
+        named=known.named,
+        crew=known.crew,
+        t=t,
+        index=state.number(name),
+        introduced_t=t,
     )

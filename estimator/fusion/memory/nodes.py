@@ -43,6 +43,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         heading_rad: as told by its `node` reading.
         heading_sigma_rad: as told by its `node` reading.
         device: what hardware it wears, as told by its `node` readings.
+        crew: the crew of a responder, as told by its `node` readings.
         changed: when another unit was told to be worn (s), and what it faces, if that was told (rad); until
             that one reports.
         rival: its way by ranges alone, beside the one that its unit tells.
@@ -118,6 +119,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     bias_told: Told = UNTOLD
     otherwise: tuple[Alternative, ...] = ()
     device: str | None = None
+    crew: str | None = None
     changed: tuple[float, float | None] | None = None
     frame_rad: float = 0.0
     rival: Rival | None = None

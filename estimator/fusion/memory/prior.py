@@ -11,13 +11,14 @@ from estimator.graph.variable import DIMENSION, TECHNOLOGIES
 
 Key = tuple[str, int]
 """A block: ("walk", node number) with a PDR unit's errors, ("free", node number) with a velocity, ("stand",
-node number), ("range", "rssi", "altimeter" or "receiver", number of the technology)."""
+node number), ("range", "rssi", "altimeter" or "receiver", number of the technology), ("loss", its number)."""
 
 PLACED = ("walk", "free", "stand")
 SIZES: Mapping[str, int] = {
     "walk": 6,
     "free": 6,
     "stand": 3,
+    "loss": 1,
     **{kind: count for kind, count in DIMENSION.items() if kind in TECHNOLOGIES},
 }
 """How many numbers each kind of block has."""

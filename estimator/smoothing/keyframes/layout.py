@@ -15,6 +15,7 @@ from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.graph.variable import DIMENSION, TECHNOLOGIES, Variable
 from estimator.smoothing.keyframes.displacement_sums import Way
+from estimator.smoothing.keyframes.losses import losses_of
 from estimator.smoothing.keyframes.walks import HEADING, STATES
 
 
@@ -52,6 +53,8 @@ class Layout:
         width: columns of a keyframe.
         stands: first column of each standing node in the border, by its number.
         technologies: first column of each technology in the border, by kind and number.
+        losses: what powers between crews and told radios lose.
+        lost: each loss in the border, by kind and number.
         border: columns of the border.
     """
 
@@ -84,7 +87,7 @@ class Layout:
             if known_t is not None:
                 self.times[0, i] = min(self.times[0, i], known_t)
         self.width = STATES * len(self.walks)
-        self._lay_border()
+        self._lay_border(() if prior is None else prior.keys)
 
     def _walk(self, node: NodeState, begin_t: float, unit: bool, end_t: float) -> Walk:
         start = min(max(begin_t, self.since_t), end_t)
@@ -98,7 +101,7 @@ class Layout:
             way = Way(float(mine[0, 2]) if len(mine) else start, mine, node.walk_factors)
         return Walk(node.index, node, first, last, way, begin_t >= self.since_t)
 
-    def _lay_border(self) -> None:
+    def _lay_border(self, carried: Sequence[Key]) -> None:
         self.stands: dict[int, int] = {}
         self.technologies: dict[Key, int] = {}
         start = 0
@@ -110,7 +113,9 @@ class Layout:
             if variable.kind in TECHNOLOGIES:
                 self.technologies[technology_key(self.state, variable)] = start
                 start += DIMENSION[variable.kind]
-        self.border = start
+        bearers = [walk.number for walk in self.walks if walk.way is not None]
+        self.losses, self.lost = losses_of(self.state, bearers, self.grid, carried, start)
+        self.border = start + len(self.lost)
 
     def part(self, walks: Sequence[int], until: int) -> Self:
         """Some of its walks up to some keyframe, beside all of its border.
@@ -175,6 +180,9 @@ class Layout:
             if variable.kind in TECHNOLOGIES:
                 at = self.technologies[technology_key(self.state, variable)]
                 border[at : at + DIMENSION[variable.kind]] = self.state.graph.value(variable)
+        for (_, number), one in self.lost.items():
+            usual = 0.0 if one.before is None else border[self.lost[one.before].column]
+            border[one.column] = self.state.lost_db.get(number, usual)
         return x
 
     def states(self, x: Array, index: int) -> Array:

@@ -43,8 +43,8 @@ def hold_quadratic(
 
     Args:
         chosen: which.
-        columns: where each depends on the border, m × 15; −1: on something else, or on nothing.
-        jacobian: their derivatives, m × 15.
+        columns: where each depends on the border, m × 16; −1: on something else, or on nothing.
+        jacobian: their derivatives, m × 16.
         weighted: how they are weighed.
         border: its numbers where they were linearised, s.
     """

@@ -178,7 +178,7 @@ def _columns(layout: Layout, key: Key) -> Indices:
     elif kind == "stand":
         start = layout.stands.get(number)
     else:
-        start = layout.technologies.get(key)
+        start = layout.lost[key].column if key in layout.lost else layout.technologies.get(key)
     if start is None:
         return np.full(SIZES[kind], -1)
     found = np.arange(start, start + SIZES[kind]) + (0 if kind in ("walk", "free") else size)

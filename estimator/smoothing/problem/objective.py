@@ -20,6 +20,7 @@ from estimator.smoothing.keyframes.priors import own_priors
 from estimator.smoothing.keyframes.unknowns import Unknowns
 from estimator.smoothing.keyframes.walks import Motion, misfit
 from estimator.smoothing.problem.held_quadratic import HeldQuadratic
+from estimator.smoothing.problem.loss_walks import LossWalks
 from estimator.smoothing.problem.marginal_prior import MarginalPrior
 from estimator.smoothing.problem.solution import Trial
 from estimator.smoothing.problem.sparsity import Sparsity
@@ -44,6 +45,7 @@ class Objective:
         self.layout, self.rows, self.prior = layout, rows, prior
         known = () if prior is None else prior.keys
         self._at, self._mean, self._information = own_priors(layout, known)
+        self.lost = LossWalks(layout, known)
         self.going = Motions(layout)
         self._carried = None if prior is None else MarginalPrior(layout, prior)
         self.left_out: Integers = np.zeros(0, dtype=np.int64)
@@ -76,6 +78,7 @@ class Objective:
         other.rows, other.aside = self.rows.part(numbers, x, chosen), left
         vars(other).update(
             _at=at[at >= 0],
+            lost=self.lost.part(numbers.layout),
             _mean=self._mean[at >= 0],
             _information=self._information[at >= 0],
             _carried=None if self._carried is None else self._carried.part(numbers, x),
@@ -85,7 +88,7 @@ class Objective:
     @cached_property
     def coupled(self) -> Sparsity:
         """How its unknowns hang together."""
-        return Sparsity(self.layout, self.rows, self._at, self._carried)
+        return Sparsity(self.layout, self.rows, self._at, self._carried, self.lost.columns)
 
     def motions(self, x: Array) -> list[Motion]:
         """Each walk's motion at an estimate."""
@@ -106,6 +109,7 @@ class Objective:
         """Negative log likelihood up to a constant: mixtures of the readings, motion, priors."""
         total: float = total_cost(self.left_out, self.costs(residual))
         total += prior_cost(x, self._at, self._mean, self._information)
+        total += self.lost.cost(x)
         for motion in motions:
             total += misfit(motion)
         if self._carried is not None:
@@ -137,7 +141,7 @@ class Objective:
         return x if self._carried is None else self._carried.first(x)
 
     def jacobian(self, x: Array) -> Array:
-        """First-estimate Jacobians of the rows at an estimate, flat, m × 15; see `linearise`."""
+        """First-estimate Jacobians of the rows at an estimate, flat, m × 16; see `linearise`."""
         return self.rows.jacobian(self.first(x))
 
     def weigh(self, residual: Array, slack_m: float = 0.0, doubt: Array | None = None) -> Weighted:
@@ -183,12 +187,14 @@ class Objective:
             placed = placed._replace(slab=np.minimum(placed.slab, until))
             known = known._replace(slab=np.minimum(known.slab, until))
         off, ones, jacobian = self._mean - x[self._at], np.ones((len(self._at), 1)), linear.jacobian
+        pulls = self.lost.weighed(x)
 
-        def add(strand: Strand, priors: Indices, readings: Indices) -> None:
+        def add(strand: Strand, priors: Indices, readings: Indices, losses: Indices) -> None:
             strand.add(known, priors, ones, certain, off)
+            strand.add(self.coupled.losses, losses, self.lost.jacobian, pulls.information, pulls.residual)
             strand.add(placed, readings, jacobian, information, weighted.residual)
 
-        chain.each(add, known.parts, placed.parts)
+        chain.each(add, known.parts, placed.parts, self.coupled.losses.parts)
         return chain
 
     def add_curvature(self, chain: Chain, x: Array, weighted: Weighted, signed: bool) -> None:

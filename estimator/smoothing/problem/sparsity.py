@@ -18,10 +18,13 @@ class Sparsity:
         rows: the readings among the groups.
         pairs: those of them that are pairs, of each group.
         priors: the walks' own priors among the groups.
+        losses: what is known of losses, among the groups.
         shared: what each group has in common with the prior of the window.
     """
 
-    def __init__(self, layout: Layout, rows: Rows, at: Indices, carried: MarginalPrior | None) -> None:
+    def __init__(
+        self, layout: Layout, rows: Rows, at: Indices, carried: MarginalPrior | None, lost: Indices
+    ) -> None:
         """Find them.
 
         Args:
@@ -29,6 +32,7 @@ class Sparsity:
             rows: its readings.
             at: flat columns of the walks' own priors.
             carried: the prior of the window; None: there is none.
+            lost: columns of the border of losses and of those before them, n × 2; −1: none.
         """
         hang_together = [rows.columns] if carried is None else [rows.columns, carried.coupled]
         self.groups = groups = Groups(layout.width, layout.border, hang_together)
@@ -39,4 +43,6 @@ class Sparsity:
         slab = np.where(at < size, at // width, 0)
         columns = np.where(at < size, at % width, at - size + layout.width)
         self.priors: GroupedReadings = groups.placed(slab, columns[:, None])
+        among = np.where(lost >= 0, layout.width + lost, -1)
+        self.losses: GroupedReadings = groups.placed(np.zeros(len(lost), dtype=np.int64), among)
         self.shared: list[SharedNumbers] = [] if carried is None else carried.shared(groups.each)

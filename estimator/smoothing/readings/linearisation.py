@@ -16,8 +16,8 @@ from estimator.measurements.range import range_at
 from estimator.measurements.rssi import rssi_at
 from estimator.smoothing.keyframes.ends import FIXED, UNIT, Table, faced, place_end
 
-ANY = 15
-"""Numbers that one row depends on at most: two ends of six, three of a technology."""
+ANY = 16
+"""Numbers that one row depends on at most: two ends of six, three of a technology, what it loses."""
 
 
 class Readings(NamedTuple):
@@ -27,7 +27,9 @@ class Readings(NamedTuple):
         kind: of each pair, m.
         value: what was measured, m.
         constant: known part of a power (dB), or heading that a bearing counts from (rad), m.
-        extra: where its technology's three numbers are in the flat unknowns, m × 3; 0 if it has none.
+        extra: where its technology's three numbers and what it loses are in the flat unknowns, m × 4; 0 if it
+            has none.
+        lost: 1 where it loses something with others of its crew, m; else 0.
         ahead: how far ahead of its bearer the other radio lies, of ranges how far behind, m, see `bodies`.
         a: first ends of the pairs.
         b: second ends.
@@ -46,6 +48,7 @@ class Readings(NamedTuple):
     value: Array
     constant: Array
     extra: Integers
+    lost: Array
     ahead: Array
     a: Table
     b: Table
@@ -128,12 +131,13 @@ def residuals(readings: Readings, numbers: Array, first: int, last: int, found: 
     # What is taken out of a tuple in the loop is counted in the loop.
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
     value, constants, ahead = readings.value, readings.constant, readings.ahead
+    lost = readings.lost
     for i in range(first, min(last, m)):
         place_end(ends_a, i, numbers, a, turned)
         place_end(ends_b, i, numbers, b, turned)
         constant = counted_from(kinds[i], constants[i], ends_a, i, x)
         seen = predict_pair(kinds[i], value[i], constant, x[extra[i, 0]], x[extra[i, 1]], a, b)
-        found[i] = value[i] - seen.predicted - ahead[i] * x[extra[i, 2]]
+        found[i] = value[i] - seen.predicted - ahead[i] * x[extra[i, 2]] - lost[i] * x[extra[i, 3]]
     on, by, crumb = readings.on, readings.by, readings.crumb
     for i in range(max(first - m, 0), min(last - m, n)):
         axis = readings.axis[i]
@@ -160,7 +164,7 @@ def jacobians(readings: Readings, numbers: Array, first: int, last: int, found: 
         numbers: the estimate, see `ends.faced`.
         first: the first of the rows.
         last: the one after the last of them.
-        found: takes them, rows × 15; zeros before. Numpy is given memory for it in large pages, a compiled
+        found: takes them, rows × 16; zeros before. Numpy is given memory for it in large pages, a compiled
             loop would wait for thousands of small ones.
     """
     m, n, x = len(readings.kind), len(readings.axis), numbers[:, 0]
@@ -168,6 +172,7 @@ def jacobians(readings: Readings, numbers: Array, first: int, last: int, found: 
     slope = np.empty(3)
     ends_a, ends_b, kinds, extra = readings.a, readings.b, readings.kind, readings.extra
     value, constants, ahead = readings.value, readings.constant, readings.ahead
+    lost = readings.lost
     for i in range(first, min(last, m)):
         kind = kinds[i]
         by_a[:], by_b[:] = 0.0, 0.0
@@ -183,6 +188,7 @@ def jacobians(readings: Readings, numbers: Array, first: int, last: int, found: 
             chain_rule(slope, by_b, found[i, 6:12])
         if kind < BEARING:
             found[i, 12], found[i, 13], found[i, 14] = seen.by_first, seen.by_second, ahead[i]
+            found[i, 15] = lost[i]
         elif kind == BODY_BEARING and ends_a.kind[i] == UNIT:
             found[i, 3] += seen.by_first
     on, by, crumb = readings.on, readings.by, readings.crumb
@@ -262,7 +268,7 @@ def add_reckoning_noise(jacobian: Array, a: Array, b: Array, on: Array, by: Arra
     """Add to the noise of all rows the dead reckoning noise of their ends since their keyframes.
 
     Args:
-        jacobian: of the rows, m × 15.
+        jacobian: of the rows, m × 16.
         a: variances of the first ends of the pairs, × 3 (m²); see `ends.Ends`.
         b: those of the second ends.
         on: those of the ends of the singles.

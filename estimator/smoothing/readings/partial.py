@@ -35,6 +35,7 @@ def partial(
         value=readings.value[pairs],
         constant=readings.constant[pairs] + np.where(held, facing, 0.0),
         extra=np.maximum(numbers.place[readings.extra[pairs]], 0),
+        lost=readings.lost[pairs],
         ahead=readings.ahead[pairs],
         a=a,
         b=b,

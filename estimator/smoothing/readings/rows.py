@@ -61,7 +61,7 @@ class Linearised:
 
     @cached_property
     def jacobian(self) -> Array:
-        """Derivatives, m × 15: made when first asked for, for where a solution ends few ask."""
+        """Derivatives, m × 16: made when first asked for, for where a solution ends few ask."""
         return self._differentiate()
 
 
@@ -71,7 +71,7 @@ class Rows:
     Attributes:
         t: epoch of each row, m (s).
         slab: keyframe of each row, m.
-        columns: what each depends on, m × 15, as `graph.scatter.scatter_rows` takes it.
+        columns: what each depends on, m × 16, as `graph.scatter.scatter_rows` takes it.
         sigma: standard deviation of the good noise, m.
         told: the same by technology and link alone, wherever both ends are, m.
         shift: what they are thought to be too long by, m.
@@ -94,14 +94,8 @@ class Rows:
         nodes = layout.state.nodes
         outside = [nodes[name].role in physics.OUTSIDE_ROLES for name in layout.state.owners]
         ground = ground_of(layout)
-        found = window_readings(
-            told,
-            since_t,
-            ground,
-            technologies_of(layout),
-            np.array(outside, dtype=bool),
-            layout.headings(),
-        )
+        known = technologies_of(layout), layout.losses, np.array(outside, dtype=bool), layout.headings()
+        found = window_readings(told, since_t, ground, *known)
         self._rows: StackedReadings = found.rows
         self.pairs, self.singles, self.drops = found.told
         self.t, self.slab, self.columns, self.noise, self.nominal, self.source, self.alike, _ = found.rows
@@ -232,7 +226,7 @@ class Rows:
 
         Args:
             x: the estimate, flat.
-            jacobian: of the rows, m × 15, by which the noise of a place becomes one of the reading.
+            jacobian: of the rows, m × 16, by which the noise of a place becomes one of the reading.
         """
         self.sigma = self.told.copy()
         held = self.floors is not None
@@ -279,7 +273,7 @@ class Rows:
         return found
 
     def jacobian(self, x: Array) -> Array:
-        """Derivatives at an estimate x, flat, m × 15."""
+        """Derivatives at an estimate x, flat, m × 16."""
         found, numbers = np.zeros((len(self.nominal), ANY)), faced(x, self._readings.headings)
         self.in_shares(lambda first, last: jacobians(self._readings, numbers, first, last, found))
         return found

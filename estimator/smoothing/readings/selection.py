@@ -11,6 +11,7 @@ from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.ends import FREE, UNIT
 from estimator.smoothing.keyframes.ground import Supports
+from estimator.smoothing.keyframes.losses import Losses, loss_column
 
 
 class Selection(NamedTuple):
@@ -18,7 +19,7 @@ class Selection(NamedTuple):
 
     Attributes:
         chosen: m.
-        extra: columns of its technology, m × 3; −1: it has none.
+        extra: columns of its technology, three, and of what it loses, m × 4; −1: it has none.
         slab: keyframe, m.
         inside: it is a range or a power, and no end is outside the building, m.
     """
@@ -31,7 +32,13 @@ class Selection(NamedTuple):
 
 @njit(cache=True)
 def choose(
-    pairs: Array, a: Supports, b: Supports, technology: Integers, outside: NDArray[np.bool_]
+    pairs: Array,
+    a: Supports,
+    b: Supports,
+    technology: Integers,
+    losses: Losses,
+    width: int,
+    outside: NDArray[np.bool_],
 ) -> Selection:
     """Choose the pairs whose ends and technology have places in a window.
 
@@ -40,16 +47,21 @@ def choose(
         a: their first ends.
         b: their second ends.
         technology: first column of each, kinds × sources; −1: there is none.
+        losses: what powers lose.
+        width: columns of a keyframe.
         outside: whether each node of the ledger is outside the building.
     """
     m = len(pairs)
     chosen, inside = np.empty(m, dtype=np.bool_), np.empty(m, dtype=np.bool_)
-    extra, slab = np.full((m, 3), -1), np.empty(m, dtype=np.int64)
+    extra, slab = np.full((m, 4), -1), np.empty(m, dtype=np.int64)
     for i in range(m):
         kind, source, first, second = int(pairs[i, 1]), int(pairs[i, 6]), int(pairs[i, 2]), int(pairs[i, 3])
         if kind <= RSSI and source >= 0 and technology[kind, source] >= 0:
             for c in range(3):
                 extra[i, c] = technology[kind, source] + c
+        if kind == RSSI:
+            lost = loss_column(losses, pairs[i])
+            extra[i, 3] = width + lost if lost >= 0 else -1
         a_moves, b_moves = a.kind[i] in (UNIT, FREE), b.kind[i] in (UNIT, FREE)
         chosen[i] = a.usable[i] and b.usable[i] and (extra[i, 0] >= 0 or kind > RSSI)
         if (a_moves and b_moves and a.slab[i] != b.slab[i]) or (a.columns[i, 0] < 0 and b.columns[i, 0] < 0):

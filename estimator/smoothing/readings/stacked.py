@@ -68,7 +68,7 @@ def arrange(
         singles: the same, n × 7.
         drops: the same, d × 3.
         slab: keyframe of each pair, m.
-        extra: columns of its technology, m × 3; −1: it has none.
+        extra: columns of its technology and of what it loses, m × 4; −1: it has none.
         off: columns of what each single's altimeter or receiver is off by, and how late, n × 2; −1: none.
         a: first ends of the pairs.
         b: second ends.
@@ -81,13 +81,13 @@ def arrange(
     t, nominal, alike, noise = np.empty(count), np.empty(count), np.ones(count), np.empty((count, 3))
     sharing = np.zeros(count)
     found, source = np.empty(count, dtype=np.int64), np.full(count, -1)
-    columns = np.full((count, 2 * size + 3), -1)
+    columns = np.full((count, 2 * size + 4), -1)
     for i in range(m):
         kind = int(pairs[i, 1])
         t[i], found[i], nominal[i], alike[i] = pairs[i, 0], slab[i], pairs[i, 5], pairs[i, 8]
         if kind < BEARING:
             source[i] = int(pairs[i, 6])
-        for c in range(3):
+        for c in range(4):
             columns[i, 2 * size + c] = extra[i, c]
         for c in range(size):
             columns[i, c], columns[i, size + c] = a.columns[i, c], b.columns[i, c]

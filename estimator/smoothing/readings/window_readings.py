@@ -13,6 +13,7 @@ from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.ends import FREE, UNIT
 from estimator.smoothing.keyframes.ground import Ends, Ground, ends_of, selected_ends
 from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.keyframes.losses import Losses
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.readings.encounters import candidates
 from estimator.smoothing.readings.linearisation import Readings
@@ -62,6 +63,7 @@ def window_readings(
     since_t: float,
     ground: Ground,
     technology: Integers,
+    losses: Losses,
     outside: NDArray[np.bool_],
     headings: Integers,
 ) -> WindowReadings:
@@ -72,6 +74,7 @@ def window_readings(
         since_t: from which epoch on they are looked at (s).
         ground: of the window.
         technology: see `selection.choose`.
+        losses: see `selection.choose`.
         outside: see `selection.choose`.
         headings: see `Readings`.
     """
@@ -87,7 +90,7 @@ def window_readings(
     for i in range(len(pairs)):
         nearest[i] = kinds[first[i]] != UNIT and kinds[second[i]] != UNIT
     a, b = ends_of(ground, first, t, nearest), ends_of(ground, second, t, nearest)
-    found = choose(pairs, a.stood, b.stood, technology, outside)
+    found = choose(pairs, a.stood, b.stood, technology, losses, STATES * len(ground.spans), outside)
     pairs, a, b = (
         selected_rows(pairs, found.chosen),
         selected_ends(a, found.chosen),
@@ -177,7 +180,7 @@ def read(
     Args:
         pairs: rows of the ledger, m × 11.
         singles: the same, n × 7.
-        extra: columns of each pair's technology, m × 3; −1: it has none.
+        extra: columns of each pair's technology and loss, m × 4; −1: it has none.
         off: columns of what each single's altimeter or receiver is off by, and how late, n × 2; −1: none.
         ground: of the window.
         ends: of the pairs, a and b, of the singles, who dropped, and what was dropped.
@@ -185,9 +188,9 @@ def read(
     """
     a, b, on, by, crumb = ends
     border = len(ground.grid) * STATES * len(ground.spans) - STATES * len(ground.spans)
-    at = np.zeros((len(pairs), 3), dtype=np.int64)
+    at = np.zeros((len(pairs), 4), dtype=np.int64)
     for i in range(len(pairs)):
-        for c in range(3):
+        for c in range(4):
             if extra[i, c] >= 0:
                 at[i, c] = border + extra[i, c]
     where = np.where(off >= 0, border + off, -1)
@@ -196,6 +199,7 @@ def read(
         pairs[:, 4].copy(),
         pairs[:, 7].copy(),
         at,
+        np.where(extra[:, 3] >= 0, 1.0, 0.0),
         np.zeros(len(pairs)),
         a.table,
         b.table,

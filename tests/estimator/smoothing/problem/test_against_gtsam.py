@@ -28,7 +28,7 @@ AT_REST = 1e-9
 
 
 class Blocks:
-    """The unknowns as GTSAM's variables: six of a walk and keyframe, three of what stands, of radios two."""
+    """The unknowns as GTSAM's variables: six of a walk and keyframe, three of what stands, of a loss one."""
 
     def __init__(self, problem: Problem, start: Array) -> None:
         self.problem, self.start = problem, start
@@ -43,6 +43,8 @@ class Blocks:
             self._add(size + first + np.arange(3))
         for (kind, _), first in layout.technologies.items():
             self._add(size + first + np.arange(SIZES[kind]))
+        for loss in layout.lost.values():
+            self._add(size + loss.column + np.arange(1))
         self.move(start)
 
     def _add(self, columns: Indices) -> None:
@@ -147,11 +149,33 @@ def prior_factors(blocks: Blocks) -> list[Any]:
     return found
 
 
+def loss_factors(blocks: Blocks) -> list[Any]:
+    """What is known of losses: of each what it is more than others."""
+    lost, found = blocks.problem.lost, []
+    for columns, signs, sigma, gains in zip(
+        lost.columns, lost.jacobian, lost.noise[0], lost.gains, strict=True
+    ):
+        keys = blocks.key_of[lost.size + columns[columns >= 0]].tolist()
+
+        def error(columns: Indices = columns, signs: Array = signs, gains: bool = gains) -> Array:
+            more = float(signs @ blocks.at[lost.size + columns])
+            return np.array([max(more, 0.0) if gains else more])
+
+        def slopes(columns: Indices = columns, signs: Array = signs, gains: bool = gains) -> Array:
+            counts = not gains or signs @ blocks.at[lost.size + columns] > 0.0
+            return np.asarray(signs[columns >= 0][None] * counts)
+
+        noise = gtsam.noiseModel.Isotropic.Sigma(1, float(sigma))
+        found.append(blocks.factor(keys, noise, error, slopes))
+    return found
+
+
 def optimum(problem: Problem, start: Array, frozen: Array) -> Array:
     """GTSAM's optimum, flat."""
     blocks = Blocks(problem, start)
     graph = gtsam.NonlinearFactorGraph()
-    for factor in [*motion_factors(blocks, frozen), *row_factors(blocks), *prior_factors(blocks)]:
+    told = row_factors(blocks) + prior_factors(blocks) + loss_factors(blocks)
+    for factor in motion_factors(blocks, frozen) + told:
         graph.add(factor)
     settings = gtsam.LevenbergMarquardtParams()
     settings.setRelativeErrorTol(1e-12)
@@ -172,13 +196,16 @@ def ranges_to_unknown_beacons() -> list[AnyReading]:
 def misfit(problem: Problem, x: Array) -> float:
     """The cost but for its constant: half the sum of squares."""
     linear = problem.linearise(x)
-    return problem.cost(x, linear.residual, problem.motions(x)) - float(np.log(problem.rows.sigma).sum())
+    constant = float(
+        np.log(problem.rows.sigma).sum() + np.log(problem.lost.noise[0][~problem.lost.gains]).sum()
+    )
+    return problem.cost(x, linear.residual, problem.motions(x)) - constant
 
 
 @pytest.fixture(scope="module", params=[paper_a_walk, ranges_to_unknown_beacons])
 def problem(request: pytest.FixtureRequest) -> Problem:
     found = problem_of(fused(request.param()))
-    found.rows.noise[:, 0] = NO_OUTLIERS
+    found.rows.noise[:, 0] = found.lost.noise[1] = NO_OUTLIERS
     return found
 
 

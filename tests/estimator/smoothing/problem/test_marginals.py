@@ -118,6 +118,9 @@ def prior_at(problem: Problem, solved: Solution, cut: int) -> Prior:
     for key, start in layout.technologies.items():
         keys.append(key)
         at += range(layout.width + start, layout.width + start + SIZES[key[0]])
+    for key, loss in layout.lost.items():
+        keys.append(key)
+        at.append(layout.width + loss.column)
     reference = from_cut(problem, solved.x, cut)[np.r_[: layout.width, -layout.border : 0]][at]
     return Prior(tuple(keys), left.matrix[np.ix_(at, at)], left.vector[at], reference, epochs)
 

@@ -13,8 +13,8 @@ NUMBERS = 8
 def hill(seed: int, stiffness: Array) -> tuple[Array, Array]:
     """Normal equations, and curvature that differs from them by these factors, NUMBERS × NUMBERS each."""
     chance = np.random.default_rng(seed)
-    root = chance.normal(0.0, 1.0, (NUMBERS, NUMBERS)) + 3.0 * np.eye(NUMBERS)
-    across, _ = np.linalg.qr(chance.normal(0.0, 1.0, (NUMBERS, NUMBERS)))
+    turned, across = (np.linalg.qr(chance.normal(0.0, 1.0, (NUMBERS, NUMBERS)))[0] for _ in range(2))
+    root = turned * chance.uniform(0.5, 4.0, NUMBERS)
     return root @ root.T, root @ across @ np.diag(1.0 / stiffness) @ across.T @ root.T
 
 
