@@ -53,7 +53,7 @@ class Layout:
         width: columns of a keyframe.
         stands: first column of each standing node in the border, by its number.
         technologies: first column of each technology in the border, by kind and number.
-        losses: what powers between crews and told radios lose.
+        losses: what powers between crews and anchors lose.
         lost: each loss in the border, by kind and number.
         border: columns of the border.
     """

@@ -5,6 +5,7 @@ their powers are too weak alike. Taken for errors of each link, that turns the m
 0123).
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -78,9 +79,9 @@ def losses_of(
     Returns:
         The losses, and each of their blocks.
     """
-    step_s = STEP_S
+    step_s, since_t = STEP_S, float(grid[0])
     if state.ledger.complete:
-        step_s *= max(np.ceil((grid[-1] - grid[0]) / STEPS / STEP_S), 1.0)
+        step_s *= max(math.ceil((float(grid[-1]) - since_t) / STEPS / STEP_S), 1)
     owners = state.owners
     crew, radio = np.full(len(owners) + 1, -1), np.full(len(owners) + 1, -1)
     # Those of whom nobody has told a crew are one.
@@ -93,13 +94,14 @@ def losses_of(
     radio[radios] = np.arange(len(radios))
     others = [*radios, EVERYONE]
     known = [parts_of(number) for kind, number in carried if kind == "loss"]
-    since_s = min([grid[0] // step_s * step_s, *(since for _, _, since in known)])
-    steps = int((grid[-1] - since_s) // step_s) + 1
+    since_s = min([since_t // step_s * step_s, *(since for _, _, since in known)])
+    # Most incidents have no anchor: then nobody is asked whom he hears.
+    steps = int((float(grid[-1]) - since_s) // step_s) + 1 if radios else 0
     columns = np.full((len(crews), len(others), steps), -1)
     found = Losses(crew, radio, since_s, step_s, columns)
     if columns.size:
-        mark_heard(state.ledger.table("pairs"), float(grid[0]), found)
-    for leader, other, since in known:
+        mark_heard(state.ledger.table("pairs"), since_t, found)
+    for leader, other, since in known if radios else ():
         if leader in crews and other in others:
             columns[crews.index(leader), others.index(other), int((since - since_s) // step_s)] = 0
     columns[:, -1] = columns.max(axis=1)

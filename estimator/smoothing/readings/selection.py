@@ -59,7 +59,7 @@ def choose(
         if kind <= RSSI and source >= 0 and technology[kind, source] >= 0:
             for c in range(3):
                 extra[i, c] = technology[kind, source] + c
-        if kind == RSSI:
+        if kind == RSSI and losses.columns.size:
             lost = loss_column(losses, pairs[i])
             extra[i, 3] = width + lost if lost >= 0 else -1
         a_moves, b_moves = a.kind[i] in (UNIT, FREE), b.kind[i] in (UNIT, FREE)
