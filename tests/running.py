@@ -6,6 +6,7 @@ import queue
 import secrets
 import signal
 import socket
+import sqlite3
 import subprocess
 import sys
 import threading
@@ -143,14 +144,33 @@ def running(data: Path, *options: str) -> Iterator[Server]:
 
 
 @contextlib.contextmanager
-def stopped(pid: int) -> Iterator[None]:
-    """A process that hangs for the length of a block."""
+def stopped(pid: int, writes_to: Path | None = None) -> Iterator[None]:
+    """A process that hangs for the length of a block.
+
+    Args:
+        pid: of the process.
+        writes_to: a data folder's database that it does not write to just then: it would hold up all others.
+    """
     os.kill(pid, signal.SIGSTOP)
+    while writes_to is not None and _is_locked(writes_to):
+        os.kill(pid, signal.SIGCONT)
+        time.sleep(0.01)
+        os.kill(pid, signal.SIGSTOP)
     try:
         yield
     finally:
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, signal.SIGCONT)
+
+
+def _is_locked(database: Path) -> bool:
+    with contextlib.closing(sqlite3.connect(database, timeout=0.0, isolation_level=None)) as connection:
+        try:
+            connection.execute("BEGIN IMMEDIATE")
+        except sqlite3.OperationalError:
+            return True
+        connection.execute("ROLLBACK")
+    return False
 
 
 class Post:

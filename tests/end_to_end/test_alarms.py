@@ -120,7 +120,7 @@ def test_an_answer_that_is_in_the_log_is_not_taken_back_by_pictures_that_do_not_
 ) -> None:
     incident = in_trouble(server, post, commander)
     (worker,) = server.worker_pids()
-    with stopped(worker):
+    with stopped(worker, server.data / "firethread.db"):
         commander.acknowledges()
         eventually(lambda: "acknowledged" in commander.banners[0])
         commander.page.wait_for_timeout(2500)
