@@ -29,7 +29,7 @@ from estimator.graph.gauge import Turning, change_pairs, pivot, turn_pairs, turn
 from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.right_sides import carry, carry_back
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
-from estimator.graph.scatter import scatter_rows
+from estimator.graph.scatter import ROW, scatter_rows
 from estimator.graph.symmetric import full
 from estimator.graph.triangular import inverted
 from estimator.graph.variable import Variable
@@ -64,7 +64,6 @@ from estimator.smoothing.problem.gauge_turn import moved_from, turn_between
 from estimator.smoothing.readings.bodies import ahead
 from estimator.smoothing.readings.curvature import BentPairs, NormalMatrix, Numbers, add_curvature
 from estimator.smoothing.readings.linearisation import (
-    ANY,
     Readings,
     add_reckoning_noise,
     jacobians,
@@ -122,11 +121,11 @@ def _warm_chain() -> None:
     k, n, s = 2, STATES, 1
     diagonal, link = np.zeros((k, n, n)) + np.eye(n), np.zeros((k - 1, 1, n, n))
     wide, corner, rest = np.zeros((k, n, s + 1)), np.ones((s, s)), np.zeros(s)
-    slab, columns = np.zeros(1, dtype=np.int64), np.zeros((1, ANY), dtype=np.int64)
+    slab, columns = np.zeros(1, dtype=np.int64), np.zeros((1, ROW), dtype=np.int64)
     one, x = np.ones(1), np.zeros(n)
     couple(columns, n, n, np.zeros(1, dtype=np.int64), np.zeros((1, s), dtype=np.bool_))
     localise(columns, n, n, slab, np.zeros((2, n + s), dtype=np.int64))
-    scatter_rows(slab, slab, columns, np.zeros((1, ANY)), one, one, diagonal, wide, corner, rest)
+    scatter_rows(slab, slab, columns, np.zeros((1, ROW)), one, one, diagonal, wide, corner, rest)
     between, states = np.zeros((1, 12)), np.zeros((k, n))
     motion = unit_motion(between, one, states)
     misfit(motion)
@@ -165,7 +164,7 @@ def _warm_chain() -> None:
     ahead(heard, slab, ground, no, states, place)
     rows = found.rows
     readings = Readings(slab, one, one, four, one, one, end, end, slab, one, pair, one, end, end, end, slab)
-    jacobian, numbers = np.zeros((5, ANY)), faced(x, slab)
+    jacobian, numbers = np.zeros((5, ROW)), faced(x, slab)
     residuals(readings, numbers, 0, 5, np.zeros(5))
     jacobians(readings, numbers, 0, 5, jacobian)
     add_reckoning_noise(jacobian, place, place, place, place, np.ones(5))
@@ -179,8 +178,8 @@ def _warm_chain() -> None:
     short_costs(one, one)
     nowhere = np.full((1, 2), -1)
     scores_by_half(nowhere, one, one, 1)
-    cross_information(np.zeros((1, 2)), n, n, columns, slab, np.zeros((1, ANY)), one, nowhere, nowhere)
-    probe(np.zeros((n, PROBES)), n, n, columns, slab, np.zeros((1, ANY)), one)
+    cross_information(np.zeros((1, 2)), n, n, columns, slab, np.zeros((1, ROW)), one, nowhere, nowhere)
+    probe(np.zeros((n, PROBES)), n, n, columns, slab, np.zeros((1, ROW)), one)
     lag_one_correlation(slab, one)
     _, of_node = by_node(slab, heard, 1)
     test_place(of_node, heard, 0, 0, one, one, 0.0)

@@ -18,14 +18,15 @@ MANY = 10_000
 
 @cache
 def _threads() -> ThreadPoolExecutor:
-    """As many as there are cores for this process."""
-    return ThreadPoolExecutor(get_num_threads(), thread_name_prefix="at once")
+    """One for each core for this process but that of who asks."""
+    return ThreadPoolExecutor(max(get_num_threads() - 1, 1), thread_name_prefix="at once")
 
 
 def in_parallel(function: Callable[..., T], *items: Iterable[object]) -> list[T]:
     """What a function gives for each item, or each row of items, in their order.
 
-    Each thread takes the next item that is left: it is woken once for all of them, not once for each.
+    Each thread takes the next item that is left: it is woken once for all of them, not once for each. Who
+    asks works along, and waits for none that has not begun.
 
     Args:
         function: changes nothing that another item's call reads.
@@ -44,9 +45,11 @@ def in_parallel(function: Callable[..., T], *items: Iterable[object]) -> list[T]
             except Exception as error:  # noqa: BLE001 - who asks is told
                 raised[i] = error
 
-    begun = [_threads().submit(work) for _ in range(min(get_num_threads(), len(rows)))]
-    for one in begun:
-        one.result()
+    asked = [_threads().submit(work) for _ in range(min(get_num_threads(), len(rows)) - 1)]
+    work()
+    for one in asked:
+        if not one.cancel():
+            one.result()
     if raised:
         raise raised[min(raised)]
     return [found[i] for i in range(len(rows))]

@@ -6,8 +6,8 @@ from numba import njit
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 
-END, ROW = 6, 16
-"""Numbers of an end that moves; columns of a row: two ends, three numbers that many rows share, and one."""
+END, ROW = 6, 15
+"""Numbers of an end that moves; columns of a row: two ends, and three numbers that many rows share."""
 
 
 @njit(cache=True, nogil=True)
@@ -30,7 +30,7 @@ def scatter_rows(
         slab: keyframe of each row, m; any where it touches none.
         columns: which numbers each row depends on, m × c: those of the keyframe first (below its width),
             those of the border after them; −1: unused. Of `ROW` they are those of two ends, six side by
-            side of one that moves and three of one that stands, up to three more, and one by itself.
+            side of one that moves and three of one that stands, and up to three more; then one by itself.
         jacobian: derivatives, m × c.
         information: P⁻¹, m.
         residual: z − h(x), m.
@@ -45,7 +45,7 @@ def scatter_rows(
     by_moving, by_lasting = np.empty(most), np.empty(most)
     corners = corner.reshape(1, last, last)
     for r in chosen:
-        if most == ROW and is_anchored(columns, r, width):
+        if ROW <= most <= ROW + 1 and is_anchored(columns, r, width):
             row = columns, jacobian, information, residual
             add_anchored(r, slab[r], *row, diagonal, wide, corners, corner_gradient)
             continue
@@ -81,8 +81,8 @@ def is_anchored(columns: Integers, r: int, width: int) -> bool:
     """Whether one end of a row moves, and what it depends on of the border are threes side by side."""
     common = columns[r, 2 * END]
     moves = (0 <= columns[r, 0] < width) != (0 <= columns[r, END] < width)
-    threes = columns[r, ROW - 2] == (common + 2 if common >= 0 else -1)
-    return bool(moves and threes and columns[r, ROW - 1] < 0)
+    threes = columns[r, ROW - 1] == (common + 2 if common >= 0 else -1)
+    return bool(moves and threes and (columns.shape[1] == ROW or columns[r, ROW] < 0))
 
 
 @njit(cache=True, forceinline=True)

@@ -39,15 +39,16 @@ def enter(state: FusionState, node: NodeState, biases: Iterable[ToldBias]) -> li
 def _keep(state: FusionState, node: NodeState, told: ToldBias) -> None:
     """Keep a bias, together with what the same leg has told before: a window holds a leg as a whole."""
     t, (value, sigma), noise, _, leg_t = told
-    singles = state.ledger.table("singles")
-    earlier = _of_legs(singles, node) & (singles[:, 0] > leg_t)
-    if earlier.any():
-        known, product = sigma**-2, value * sigma**-2
-        for before, before_sigma in singles[earlier, 3:5].tolist():
-            known += before_sigma**-2
-            product += before * before_sigma**-2
-        value, sigma = product / known, known**-0.5
-        state.ledger.replace("singles", singles[~earlier])
+    if leg_t < t:
+        singles = state.ledger.table("singles")
+        earlier = _of_legs(singles, node) & (singles[:, 0] > leg_t)
+        if earlier.any():
+            known, product = sigma**-2, value * sigma**-2
+            for before, before_sigma in singles[earlier, 3:5].tolist():
+                known += before_sigma**-2
+                product += before * before_sigma**-2
+            value, sigma = product / known, known**-0.5
+            state.ledger.replace("singles", singles[~earlier])
     kind = float(physics.NOISES.index(noise))
     state.ledger.add("singles", t, node.index, GYRO_BIAS, value, sigma, kind, -1.0)
 

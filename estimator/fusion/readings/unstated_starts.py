@@ -98,10 +98,9 @@ def is_copy(cadence: Cadence, told: Reported) -> bool:
     whole_of_it = told.heading_rad is not None and math.hypot(*told.delta_m) > COPY
     # Who walks evenly reports the same again, but at his unit's own time.
     waited_s = told.t - last.t
-    repeats = cadence.period_s is None and not cadence.stands and is_coarse(told)
     if says_the_same(last, told):
         usual_s = cadence.usual_s
-        soon = SOONER if repeats else SOON
+        soon = SOONER if repeats_itself(cadence, told) else SOON
         if usual_s is not None and waited_s < soon * usual_s:
             own = len(cadence.spans_s) < SPANS_LEAST or is_timely(waited_s, cadence.middle_s)
             return not (own and left_some_out(usual_s / waited_s))
@@ -112,7 +111,18 @@ def is_copy(cadence: Cadence, told: Reported) -> bool:
     # Hardly any says the same: what its unit's time is need not be asked.
     if not whole_of_it or not any(says_the_same(one, told) for one in cadence.recent[:-1]):
         return False
-    return not repeats and not is_timely(waited_s, cadence.period_s or cadence.usual_s)
+    timely = is_timely(waited_s, cadence.period_s or cadence.usual_s)
+    return not timely and not repeats_itself(cadence, told)
+
+
+def repeats_itself(cadence: Cadence, told: Reported) -> bool:
+    """Whether a unit says the same again and again: it tells its bearer's steps, at no times of its own.
+
+    Args:
+        cadence: what it has reported.
+        told: its newest report.
+    """
+    return not cadence.stands and is_coarse(told) and cadence.period_s is None
 
 
 def is_coarse(told: Reported) -> bool:

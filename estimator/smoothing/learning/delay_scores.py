@@ -59,9 +59,9 @@ def cross_information(
         right: n × 2 c, of each of c radios in both halves; changed.
         width: columns of a keyframe.
         size: of all of them.
-        columns: what each of m readings depends on, m × 16.
+        columns: what each of m readings depends on, m × c.
         slab: its keyframe, m.
-        jacobian: derivatives, m × 16.
+        jacobian: derivatives, m × c.
         weight: P⁻¹, m.
         half: see `scores_by_half`.
         place: which of the radios are at both ends, m × 2; −1: none.
@@ -100,9 +100,9 @@ def probe(
         right: n × `PROBES`, changed.
         width: columns of a keyframe.
         size: of all of them.
-        columns: what each of m readings depends on, m × 16.
+        columns: what each of m readings depends on, m × c.
         slab: its keyframe, m.
-        jacobian: derivatives, m × 16.
+        jacobian: derivatives, m × c.
         root: √w of each, m.
     """
     for r in range(len(columns)):

@@ -43,8 +43,8 @@ def hold_quadratic(
 
     Args:
         chosen: which.
-        columns: where each depends on the border, m × 16; −1: on something else, or on nothing.
-        jacobian: their derivatives, m × 16.
+        columns: where each depends on the border, m × c; −1: on something else, or on nothing.
+        jacobian: their derivatives, m × c.
         weighted: how they are weighed.
         border: its numbers where they were linearised, s.
     """

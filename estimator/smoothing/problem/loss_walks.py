@@ -55,6 +55,8 @@ class LossWalks:
 
     def cost(self, x: Array) -> float:
         """Negative log likelihood at an estimate, flat, up to a constant."""
+        if not self.columns.size:
+            return 0.0
         residual = self.residual(x)
         costs = mixture_cost(residual, *self.noise)
         gained = np.where(residual < 0.0, costs - np.log(self.noise[0]), 0.0)

@@ -141,7 +141,7 @@ class Objective:
         return x if self._carried is None else self._carried.first(x)
 
     def jacobian(self, x: Array) -> Array:
-        """First-estimate Jacobians of the rows at an estimate, flat, m × 16; see `linearise`."""
+        """First-estimate Jacobians of the rows at an estimate, flat, m × c; see `linearise`."""
         return self.rows.jacobian(self.first(x))
 
     def weigh(self, residual: Array, slack_m: float = 0.0, doubt: Array | None = None) -> Weighted:

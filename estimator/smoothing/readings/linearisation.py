@@ -11,13 +11,11 @@ from estimator.fusion.learned.noise import near_dbm, through_sigma
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
+from estimator.graph.scatter import ROW
 from estimator.measurements.bearing import bearing_at
 from estimator.measurements.range import range_at
 from estimator.measurements.rssi import rssi_at
 from estimator.smoothing.keyframes.ends import FIXED, UNIT, Table, faced, place_end
-
-ANY = 16
-"""Numbers that one row depends on at most: two ends of six, three of a technology, what it loses."""
 
 
 class Readings(NamedTuple):
@@ -164,8 +162,8 @@ def jacobians(readings: Readings, numbers: Array, first: int, last: int, found: 
         numbers: the estimate, see `ends.faced`.
         first: the first of the rows.
         last: the one after the last of them.
-        found: takes them, rows × 16; zeros before. Numpy is given memory for it in large pages, a compiled
-            loop would wait for thousands of small ones.
+        found: takes them, rows × 16, or 15 where nothing is lost; zeros before. Numpy is given memory for it
+            in large pages, a compiled loop would wait for thousands of small ones.
     """
     m, n, x = len(readings.kind), len(readings.axis), numbers[:, 0]
     a, b, by_a, by_b = np.empty(3), np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
@@ -188,7 +186,8 @@ def jacobians(readings: Readings, numbers: Array, first: int, last: int, found: 
             chain_rule(slope, by_b, found[i, 6:12])
         if kind < BEARING:
             found[i, 12], found[i, 13], found[i, 14] = seen.by_first, seen.by_second, ahead[i]
-            found[i, 15] = lost[i]
+            if found.shape[1] > ROW:
+                found[i, ROW] = lost[i]
         elif kind == BODY_BEARING and ends_a.kind[i] == UNIT:
             found[i, 3] += seen.by_first
     on, by, crumb = readings.on, readings.by, readings.crumb
@@ -268,7 +267,7 @@ def add_reckoning_noise(jacobian: Array, a: Array, b: Array, on: Array, by: Arra
     """Add to the noise of all rows the dead reckoning noise of their ends since their keyframes.
 
     Args:
-        jacobian: of the rows, m × 16.
+        jacobian: of the rows, m × c.
         a: variances of the first ends of the pairs, × 3 (m²); see `ends.Ends`.
         b: those of the second ends.
         on: those of the ends of the singles.

@@ -15,6 +15,7 @@ from estimator.fusion.readings import echoes
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array, Indices
 from estimator.graph.parallel import in_shares
+from estimator.graph.scatter import ROW
 from estimator.measurements.bearing import wrap
 from estimator.smoothing.keyframes.ends import FREE, UNIT, faced, place_ends
 from estimator.smoothing.keyframes.ground import ground_of
@@ -24,7 +25,6 @@ from estimator.smoothing.readings.between_reports import widened
 from estimator.smoothing.readings.bodies import ahead_in
 from estimator.smoothing.readings.fix_speeds import fix_speeds
 from estimator.smoothing.readings.linearisation import (
-    ANY,
     Readings,
     add_reckoning_noise,
     jacobians,
@@ -61,7 +61,7 @@ class Linearised:
 
     @cached_property
     def jacobian(self) -> Array:
-        """Derivatives, m × 16: made when first asked for, for where a solution ends few ask."""
+        """Derivatives, m × c: made when first asked for, for where a solution ends few ask."""
         return self._differentiate()
 
 
@@ -71,7 +71,8 @@ class Rows:
     Attributes:
         t: epoch of each row, m (s).
         slab: keyframe of each row, m.
-        columns: what each depends on, m × 16, as `graph.scatter.scatter_rows` takes it.
+        columns: what each depends on, m × c, as `graph.scatter.scatter_rows` takes it: two ends of six, three
+            of a technology, and what is lost, where anything is.
         sigma: standard deviation of the good noise, m.
         told: the same by technology and link alone, wherever both ends are, m.
         shift: what they are thought to be too long by, m.
@@ -105,6 +106,8 @@ class Rows:
         self.told: Array = self.nominal
         self._alone, self._bearings = self.nominal, found.bearings
         self._usual_noise: Array = self.noise
+        if not layout.lost:
+            self.columns = self.columns[:, :ROW].copy()
         self._white, self._common = self.nominal**2, np.zeros(len(self.nominal))
         self._inside, self._strongest, self._unsure_m2 = found.inside, found.strongest, widened(layout, found)
         speeds = fix_speeds(self.singles, found.readings.off[:, 1], ledger.table("poses"))
@@ -226,7 +229,7 @@ class Rows:
 
         Args:
             x: the estimate, flat.
-            jacobian: of the rows, m × 16, by which the noise of a place becomes one of the reading.
+            jacobian: of the rows, m × c, by which the noise of a place becomes one of the reading.
         """
         self.sigma = self.told.copy()
         held = self.floors is not None
@@ -273,8 +276,8 @@ class Rows:
         return found
 
     def jacobian(self, x: Array) -> Array:
-        """Derivatives at an estimate x, flat, m × 16."""
-        found, numbers = np.zeros((len(self.nominal), ANY)), faced(x, self._readings.headings)
+        """Derivatives at an estimate x, flat, m × c."""
+        found, numbers = np.zeros(self.columns.shape), faced(x, self._readings.headings)
         self.in_shares(lambda first, last: jacobians(self._readings, numbers, first, last, found))
         return found
 

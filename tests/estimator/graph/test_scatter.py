@@ -9,6 +9,7 @@ LENGTH, WIDTH, BORDER = 3, 12, 9
 FIRST, SECOND = list(range(6)), list(range(6, 12))
 NOBODY, NOTHING = [-1] * 6, [-1] * 3
 STANDS, RADIO = [*range(12, 15), *NOTHING], [18, 19, 20]
+LOSS, NO_LOSS = [17], [-1]
 
 
 @pytest.mark.parametrize(
@@ -23,6 +24,9 @@ STANDS, RADIO = [*range(12, 15), *NOTHING], [18, 19, 20]
         STANDS + NOBODY + RADIO,
         FIRST + NOBODY + [18, 16, -1],
         FIRST + NOBODY + [18, -1, -1],
+        FIRST + STANDS + RADIO + NO_LOSS,
+        FIRST + STANDS + RADIO + LOSS,
+        FIRST + SECOND + RADIO + LOSS,
         [7],
     ],
 )
@@ -32,7 +36,7 @@ def test_rows_are_added_where_their_columns_say(columns: list[int], turned: bool
     at = np.tile(np.array(columns), (rows, 1))
     slab, chosen = rng.integers(0, LENGTH, rows), np.array([0, 2, 3])
     jacobian = np.where(at >= 0, rng.normal(size=at.shape), 0.0)
-    if len(columns) == ROW and not turned:
+    if len(columns) >= ROW and not turned:
         jacobian[:, 3:6] = jacobian[:, 9:12] = 0.0
     information, residual = rng.uniform(0.5, 2.0, rows), rng.normal(size=rows)
     diagonal, wide = np.zeros((LENGTH, WIDTH, WIDTH)), np.zeros((LENGTH, WIDTH, BORDER + 1))
