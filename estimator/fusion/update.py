@@ -73,7 +73,7 @@ def _hold(
     state: FusionState, table: Array, epochs: Array, units: Units, told: Array, sums: Array
 ) -> tuple[Taken, RivalUpdate]:
     graph = state.graph
-    changed, base_m = graph.turning(), np.array(state.base_place()[:2])
+    changed, base_m = graph.turning(state.landmarks()), np.array(state.base_place()[:2])
     newest = state.links.table
     return ask_and_take_in(
         table, epochs, units, *graph.storage(), graph.size, changed, base_m, newest, told, sums, ITERATIONS

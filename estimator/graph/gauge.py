@@ -25,7 +25,7 @@ class Turning(NamedTuple):
     """Which numbers change when the map is turned as a whole.
 
     Attributes:
-        places: east and north of places, m × 2.
+        places: east and north of places that turn with it, m × 2: not of those that were told.
         speeds: those of velocities, k × 2.
         headings: of units, h.
     """

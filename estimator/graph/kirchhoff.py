@@ -46,7 +46,7 @@ class Kirchhoff:
         self.size = 0
         self._firsts: dict[VariableKind, Indices] = {}
         self._numbers: dict[VariableKind, dict[Variable, int]] = {}
-        self._turning: Turning | None = None
+        self._turning: dict[frozenset[str], Turning] = {}
         self._matrix: Array = np.zeros((capacity, capacity))
         self._vector: Array = np.zeros(capacity)
         self._reference: Array = np.zeros(capacity)
@@ -124,13 +124,14 @@ class Kirchhoff:
             found = self._numbers[kind] = {variable: number for number, variable in enumerate(blocks)}
         return found
 
-    def turning(self) -> Turning:
-        """Which numbers change when the map is turned as a whole; not to be changed."""
-        if self._turning is None:
-            pair = np.arange(2)
-            places, speeds = (self.firsts(kind)[:, None] + pair for kind in ("position", "velocity"))
-            self._turning = Turning(places, speeds, self.firsts("unit"))
-        return self._turning
+    def turning(self, still: frozenset[str] = frozenset()) -> Turning:
+        """Which numbers change as the map is turned, places of owners that stand still left out."""
+        if still not in self._turning:
+            turned = [variable for variable in self.starts if variable.owner not in still]
+            rows = ([self.starts[v] for v in turned if v.kind == kind] for kind in ("position", "velocity"))
+            places, speeds = (np.array(own, dtype=np.intp)[:, None] + np.arange(2) for own in rows)
+            self._turning[still] = Turning(places, speeds, self.firsts("unit"))
+        return self._turning[still]
 
     def copy(self) -> Self:
         """An independent copy."""
@@ -166,7 +167,7 @@ class Kirchhoff:
         self._matrix[range(start, end), range(start, end)] = [s**-2 for s in sigma]
         self.starts = {**self.starts, variable: start}
         self.size = end
-        self._firsts, self._numbers, self._turning = {}, {}, None
+        self._firsts, self._numbers, self._turning = {}, {}, {}
 
     def _grow(self, capacity: int) -> None:
         n = self.size
@@ -209,7 +210,7 @@ class Kirchhoff:
         start = 0
         remaining = [v for v in self.starts if v not in gone_set]
         self.starts = {}
-        self._firsts, self._numbers, self._turning = {}, {}, None
+        self._firsts, self._numbers, self._turning = {}, {}, {}
         for v in remaining:
             self.starts[v] = start
             start += DIMENSION[v.kind]

@@ -158,6 +158,13 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         return self.mode in ("fixed", "static", "unit", "free")
 
     @property
+    def landmark(self) -> bool:
+        """Whether its place is told from outside, as an anchor's, or by its own fixes, as a UAV's is."""
+        if self.role == "uav":
+            return self.absolute.fixes.t is not None
+        return self.mode == "static" and self.absolute.believed_m is not None
+
+    @property
     def wait_s(self) -> float:
         """For how long readings wait for its unit's next report (s)."""
         lasted_s = self.report_s if self.report_s <= physics.REPORT_LONGEST_S else 0.0

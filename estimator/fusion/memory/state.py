@@ -220,6 +220,10 @@ class FusionState:
                 left = left or node.place_m
         return left or (0.0, 0.0, 0.0)
 
+    def landmarks(self) -> frozenset[str]:
+        """Whose places are told from outside: where the map is turned, they do not turn with it."""
+        return frozenset(node.node for node in self.nodes.values() if node.landmark)
+
     def bias_sigma_radps(self, node: NodeState) -> float:
         """Standard deviation of the prior of the gyro bias of a node's unit (rad/s).
 

@@ -56,6 +56,7 @@ class Layout:
         losses: what powers between crews and anchors lose.
         lost: each loss in the border, by kind and number.
         border: columns of the border.
+        landmarks: numbers of those whose places are told from outside.
     """
 
     def __init__(
@@ -64,6 +65,7 @@ class Layout:
         self.state = state
         self.since_t = since_t
         nodes = {node.index: node for node in state.lives()}
+        self.landmarks = frozenset(number for number, node in nodes.items() if node.landmark)
         begins = state.ledger.table("begins")
         alive: dict[int, tuple[float, bool]] = {}
         for row in begins:

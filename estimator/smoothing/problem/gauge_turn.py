@@ -74,7 +74,8 @@ def turned(left: Remainder, layout: Layout, pivot_m: Array, was: Array, now: Arr
         was: r, where the derivatives by the border were taken, flat.
         now: x, the estimate, flat.
     """
-    starts = np.array(list(layout.stands.values()), dtype=np.intp)
+    turning = [start for number, start in layout.stands.items() if number not in layout.landmarks]
+    starts = np.array(turning, dtype=np.intp)
     at, size = starts[:, None] + np.arange(2), layout.length * layout.width
     change = turned_along(was[size:], now[size:], at, pivot_m)
     if (change == np.eye(2)).all():

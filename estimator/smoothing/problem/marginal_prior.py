@@ -1,6 +1,6 @@
 """What has left the window, laid on its unknowns: the prior of its first keyframe and of the border."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from copy import copy
 from typing import NamedTuple, Self
 
@@ -58,7 +58,7 @@ class MarginalPrior:
         if len(gone):
             # Held where they were, they would not let the map turn.
             self._matrix, self._vector = marginalised(self._matrix, self._vector, gone, kept)
-        changed = _turning(prior, at, kept)
+        changed = _turning(prior, at, kept, layout.landmarks)
         self._places, self._speeds = changed.places, changed.speeds
         base_m = np.array(layout.state.base_place()[:2])
         self.pivot_m = pivot(self._matrix, self._reference, changed, base_m)
@@ -154,13 +154,21 @@ class MarginalPrior:
         return np.asarray(moved_from(self._reference, x[self._at], *pairs, self.pivot_m, turned_by))
 
 
-def _turning(prior: Prior, columns: Indices, kept: Indices) -> Turning:
-    """Which of a prior's numbers change with a turn of the map, counted among those that are still there."""
+def _turning(prior: Prior, columns: Indices, kept: Indices, still: Collection[int]) -> Turning:
+    """Which of a prior's numbers change with a turn of the map, counted among those that are still there.
+
+    Args:
+        prior: what is known from before.
+        columns: where each of its numbers is in the window, n; −1: it is not.
+        kept: those that are.
+        still: numbers of those whose places were told, which do not turn with it.
+    """
     places, speeds, headings, start = [], [], [], 0
-    for kind, _ in prior.keys:
-        if kind in ("walk", "free", "stand") and columns[start] >= 0:
+    for kind, number in prior.keys:
+        turns = number not in still
+        if kind in ("walk", "free", "stand") and columns[start] >= 0 and turns:
             places.append((start, start + 1))
-        if kind == "free" and columns[start + PLACES] >= 0:
+        if kind == "free" and columns[start + PLACES] >= 0 and turns:
             speeds.append((start + PLACES, start + PLACES + 1))
         if kind == "walk" and columns[start + HEADING] >= 0:
             headings.append(start + HEADING)

@@ -209,6 +209,19 @@ def test_the_first_rows_of_a_kind_of_blocks_follow_what_enters_and_leaves() -> N
     assert graph.firsts("velocity").tolist() == []
 
 
+def test_who_stands_still_does_not_turn_with_the_map() -> None:
+    graph = Kirchhoff()
+    for name in ("engine", "a"):
+        graph.add_node(node(name), np.zeros(3), (1.0,) * 3)
+    graph.add_node(Variable("unit", "a"), np.zeros(3), (1.0,) * 3)
+    assert graph.turning().places.tolist() == [[0, 1], [3, 4]]
+    beside = graph.turning(frozenset({"engine"}))
+    assert beside.places.tolist() == [[3, 4]]
+    assert beside.headings.tolist() == [6]
+    graph.delete_nodes([node("a")])
+    assert graph.turning(frozenset({"engine"})).places.tolist() == []
+
+
 def test_copies_share_where_blocks_stand_until_one_of_them_takes_another_in() -> None:
     graph = Kirchhoff()
     graph.add_node(node("a"), np.zeros(3), (1.0,) * 3)

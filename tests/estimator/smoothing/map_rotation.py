@@ -59,11 +59,12 @@ def walk_past_beacons(base_m: tuple[float, float] = (0.0, 0.0), free: bool = Fal
     return readings
 
 
-def walk_from_afar(until_s: float) -> list[AnyReading]:
+def walk_from_afar(until_s: float, vehicle_m: tuple[float, float] | None = None) -> list[AnyReading]:
     """A unit walks round between two beacons; only where it was switched on is known, and there is no base.
 
     Args:
         until_s: how long (s).
+        vehicle_m: where a vehicle stands that nobody hears, east and north (m); None: there is none.
     """
     chance, at = np.random.default_rng(2), np.array(AFAR_M)
     places = {name: at + np.array([e, n]) for name, (e, n) in BEACONS_M.items()}
@@ -78,6 +79,9 @@ def walk_from_afar(until_s: float) -> list[AnyReading]:
         )
     ]
     readings += [Node(t=0.0, node=name, role="beacon") for name in BEACONS_M]
+    if vehicle_m is not None:
+        at_m = (*vehicle_m, 0.0)
+        readings.append(Node(t=0.0, node="engine", role="anchor", position_m=at_m, sigma_m=0.2))
     for second in np.arange(1.0, until_s + 1.0).tolist():
         step = np.array([np.cos(second / 7.0), np.sin(second / 7.0)])
         at = at + step

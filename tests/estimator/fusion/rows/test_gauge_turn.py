@@ -22,6 +22,8 @@ HEADING_SIGMA_RAD, RANGE_SIGMA_M, OFF_M = 0.1, 0.5, 1.0
 FF, UNIT, RADIO = Variable("position", "ff"), Variable("unit", "ff"), Variable("range", "uwb")
 BEACONS = [Variable("position", f"b{number}") for number in range(3)]
 BASE_M = np.zeros(2)
+ENGINE = Variable("position", "engine")
+STILL = frozenset({"engine"})
 
 
 def mapped(chance: np.random.Generator, known_m: float = 0.5) -> Kirchhoff:
@@ -72,7 +74,7 @@ def ranges(graph: Kirchhoff, chance: np.random.Generator, moment_m: float) -> Ar
 
 def taken_in(graph: Kirchhoff, table: Array) -> None:
     told, sums, nobody = np.empty((len(table), 3)), np.zeros((1, 6)), units_from([], [])
-    newest, epochs, changed = np.array([NEW]), np.zeros(len(table)), graph.turning()
+    newest, epochs, changed = np.array([NEW]), np.zeros(len(table)), graph.turning(STILL)
     found, _ = ask_and_take_in(
         table, epochs, nobody, *graph.storage(), graph.size, changed, BASE_M, newest, told, sums, 6
     )
@@ -80,8 +82,8 @@ def taken_in(graph: Kirchhoff, table: Array) -> None:
 
 
 def known_of_north(graph: Kirchhoff) -> float:
-    """What is known of a turn of the whole map about the base (1/rad²)."""
-    turn = turn_about(graph.reference, graph.turning(), BASE_M)
+    """What is known of a turn about the base of all but the engine (1/rad²)."""
+    turn = turn_about(graph.reference, graph.turning(STILL), BASE_M)
     return float(turn @ graph.information @ turn)
 
 
@@ -95,6 +97,20 @@ def test_nobody_learns_from_ranges_where_north_is(seed: int, moment_m: float) ->
         taken_in(graph, ranges(graph, chance, moment_m))
     assert before == pytest.approx(HEADING_SIGMA_RAD**-2, rel=1e-3)
     assert known_of_north(graph) == pytest.approx(before, rel=0.1)
+
+
+@given(seeds, st.floats(0.0, 1.0))
+def test_nor_from_an_engine_in_the_street_that_nobody_ranges(seed: int, moment_m: float) -> None:
+    """It stands where it was told to: the map is turned about the base, and not about it or in between."""
+    chance = np.random.default_rng(seed)
+    graph = mapped(chance)
+    graph.add_node(ENGINE, (60.0, -20.0, 0.0), (0.2, 0.2, 0.2))
+    before = known_of_north(graph)
+    for _ in range(5):
+        taken_in(graph, ranges(graph, chance, moment_m))
+    assert before == pytest.approx(HEADING_SIGMA_RAD**-2, rel=1e-3)
+    assert known_of_north(graph) == pytest.approx(before, rel=0.1)
+    assert graph.value(ENGINE)[:2] == pytest.approx([60.0, -20.0], abs=1e-6)
 
 
 @given(seeds, st.floats(0.0, 1.0))

@@ -115,6 +115,14 @@ def test_who_begins_away_from_any_base_does_not_learn_where_north_is_from_beacon
     assert np.median(sigmas_rad[400:]) == pytest.approx(begun_rad, rel=0.1)
 
 
+def test_nobody_learns_where_north_is_from_a_vehicle_that_he_does_not_hear() -> None:
+    """Turned with the map, as if nobody had told where it stands, it had north known to 0.05 rad."""
+    begun_rad = 3.0 * HEADING_SIGMA_RAD
+    beside = headings_known(walk_from_afar(460.0, vehicle_m=(45.0, 30.0)))
+    assert beside == pytest.approx(headings_known(walk_from_afar(460.0)), rel=0.05)
+    assert np.median(beside[400:]) == pytest.approx(begun_rad, rel=0.1)
+
+
 def test_in_twenty_minutes_nobody_learns_where_north_is() -> None:
     """Three units search two storeys; only what they said of their headings at the door is absolute."""
     at_s, known = zip(*north(scenario("two-hours", 4).reports, 1200.0), strict=True)
