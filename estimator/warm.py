@@ -195,7 +195,7 @@ def _warm_chain() -> None:
     turn_gains(np.ones((1, HEARD)), told, 1.0, np.ones((2, 2)))
     scattered(place, rows, slab, no)
     sigmas(rows.nominal, rows.nominal, rows)
-    turned_by = turn_between(place[:, :2], place[:, :2])
+    turned_by = turn_between(place[:, :2], place[:, :2], place[:, 0].copy())
     turning(turned_by)
     moved_from(x, x, pair, pair, place[0, :2], turned_by)
     turn_pairs(x, pair, place[0, :2], 0.0)

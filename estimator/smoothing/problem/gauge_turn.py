@@ -16,19 +16,22 @@ STEADY_M = 2.0
 
 
 @njit(cache=True)
-def turn_between(was_m: Array, now_m: Array) -> float:
+def turn_between(was_m: Array, now_m: Array, known_per_m2: Array) -> float:
     """By how much places are turned about the pivot, by least squares (rad), less than a quarter turn.
 
-    Somewhat less than it is where all of them are near the pivot: they may as well have been moved.
+    Somewhat less than it is where all of them are near the pivot: they may as well have been moved. Of where
+    one was that hardly was known it tells nothing that it is elsewhere.
 
     Args:
         was_m: from the pivot to where they were, m × 2.
         now_m: to where they are, m × 2.
+        known_per_m2: how well it was known where each was, m (1/m²).
     """
     across = along = 0.0
     for i in range(len(was_m)):
-        across += was_m[i, 0] * now_m[i, 1] - was_m[i, 1] * now_m[i, 0]
-        along += was_m[i, 0] * now_m[i, 0] + was_m[i, 1] * now_m[i, 1]
+        weight = known_per_m2[i] / (known_per_m2[i] + STEADY_M**-2)
+        across += weight * (was_m[i, 0] * now_m[i, 1] - was_m[i, 1] * now_m[i, 0])
+        along += weight * (was_m[i, 0] * now_m[i, 0] + was_m[i, 1] * now_m[i, 1])
     return float(np.arctan2(across, max(along, 0.0) + STEADY_M**2))
 
 

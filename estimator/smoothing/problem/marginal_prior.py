@@ -19,6 +19,9 @@ from estimator.smoothing.keyframes.walks import HEADING, PLACES, STATES
 from estimator.smoothing.problem.drifts import drifted
 from estimator.smoothing.problem.gauge_turn import moved_from, turn_between
 
+KNOWN_M = 10.0
+"""A place that the prior knows less well, were all others held, it hardly knows."""
+
 
 class SharedNumbers(NamedTuple):
     """What a prior and one group of walks have in common.
@@ -63,6 +66,10 @@ class MarginalPrior:
         base_m = np.array(layout.state.base_place()[:2])
         self.pivot_m = pivot(self._matrix, self._reference, changed, base_m)
         self._turning = np.concatenate([self._places, self._speeds])
+        self._known_per_m2 = known_per_m2(self._matrix, self._places)
+        # Of what it hardly knows nothing can add up to what nobody measured: readings say where that is.
+        hardly = self._places[self._known_per_m2 < KNOWN_M**-2]
+        self._held = np.setdiff1d(np.flatnonzero(self._at >= self._size), hardly)
 
     def part(self, numbers: Unknowns, x: Array) -> Self:
         """The same of a part of the window, with all walks that it has not held where they are.
@@ -74,8 +81,11 @@ class MarginalPrior:
         other, moved = copy(self), self._moved(x, self._turned_by(x))
         layout, at = numbers.layout, numbers.place[self._at]
         kept, held = np.flatnonzero(at >= 0), np.flatnonzero(at < 0)
-        inside = (pairs[(at[pairs] >= 0).all(axis=1)] for pairs in (self._places, self._speeds))
-        places, speeds = (np.searchsorted(kept, pairs) for pairs in inside)
+        among = [(at[pairs] >= 0).all(axis=1) for pairs in (self._places, self._speeds)]
+        places, speeds = (
+            np.searchsorted(kept, pairs[some])
+            for pairs, some in zip((self._places, self._speeds), among, strict=True)
+        )
         vars(other).update(
             _size=layout.length * layout.width,
             _width=layout.width,
@@ -86,15 +96,20 @@ class MarginalPrior:
             _places=places,
             _speeds=speeds,
             _turning=np.concatenate([places, speeds]),
+            _known_per_m2=self._known_per_m2[among[0]],
+            _held=np.searchsorted(kept, self._held[at[self._held] >= 0]),
         )
         return other
 
     def first(self, x: Array) -> Array:
-        """The estimate with the border where the prior was linearised, turned as the map is now, flat."""
+        """The estimate with the border where the prior was linearised, turned as the map is now, flat.
+
+        A place that the prior hardly knows stays where it is: a derivative that was taken metres from there
+        would lead it away.
+        """
         first, there = x.copy(), self._reference.copy()
         turn_pairs(there, self._places, self.pivot_m, self._turned_by(x))
-        lasting = self._at >= self._size
-        first[self._at[lasting]] = there[lasting]
+        first[self._at[self._held]] = there[self._held]
         return first
 
     def cost(self, x: Array) -> float:
@@ -146,12 +161,23 @@ class MarginalPrior:
     def _turned_by(self, x: Array) -> float:
         """By how much the map is turned about the pivot since the prior was linearised (rad)."""
         was_m = self._reference[self._places] - self.pivot_m
-        return turn_between(was_m, x[self._at[self._places]] - self.pivot_m)
+        return turn_between(was_m, x[self._at[self._places]] - self.pivot_m, self._known_per_m2)
 
     def _moved(self, x: Array, turned_by: float) -> Array:
         """What the prior takes for deviations from its reference: see `gauge_turn.moved_from`."""
         pairs = self._places, self._speeds
         return np.asarray(moved_from(self._reference, x[self._at], *pairs, self.pivot_m, turned_by))
+
+
+def known_per_m2(matrix: Array, places: Indices) -> Array:
+    """What a Kirchhoff matrix knows of each place, were all else held: mean of two directions, m (1/m²).
+
+    Args:
+        matrix: n × n.
+        places: which of its numbers are east and north of places, m × 2.
+    """
+    found: Array = matrix.diagonal()[places].mean(axis=1)
+    return found
 
 
 def _turning(prior: Prior, columns: Indices, kept: Indices, still: Collection[int]) -> Turning:

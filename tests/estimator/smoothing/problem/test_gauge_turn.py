@@ -92,9 +92,22 @@ def test_what_was_linearised_elsewhere_knows_no_turn_of_where_places_are_now(see
 @given(st.floats(-7.0, 7.0), st.floats(-7.0, 7.0), st.floats(-7.0, 7.0))
 def test_who_crosses_the_base_has_not_turned_the_map_by_half(east: float, was_e: float, was_n: float) -> None:
     was_m = np.array([[was_e, was_n]])
-    by_rad = [turn_between(was_m, np.array([[east, north]])) for north in (-1e-6, 1e-6)]
+    known = np.array([1.0])
+    by_rad = [turn_between(was_m, np.array([[east, north]]), known) for north in (-1e-6, 1e-6)]
     assert np.abs(by_rad).max() < np.pi / 2
     assert by_rad[0] == pytest.approx(by_rad[1], abs=1e-4)
+
+
+@pytest.mark.parametrize("by_rad", [0.0, -0.3])
+def test_a_breadcrumb_of_which_nothing_is_known_turns_no_map_by_being_elsewhere(by_rad: float) -> None:
+    was_m = np.array([[12.0, 3.0], [-5.0, 14.0], [9.0, -11.0], [8.0, 2.0]])
+    cosine, sine = np.cos(by_rad), np.sin(by_rad)
+    now_m = was_m @ np.array([[cosine, sine], [-sine, cosine]])
+    now_m[3] = 7.0, -82.0
+    known_per_m2 = np.array([9.0, 4.0, 16.0, 1e-6])
+    others = turn_between(was_m[:3], now_m[:3], known_per_m2[:3])
+    assert turn_between(was_m, now_m, known_per_m2) == pytest.approx(others, abs=1e-4)
+    assert others == pytest.approx(by_rad, abs=0.01)
 
 
 def test_a_place_that_has_jumped_is_left_as_it_was_said() -> None:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from estimator.fusion.memory.prior import Prior
+from estimator.fusion.memory.prior import SIZES, Prior
 from estimator.graph.dense import Array
 from estimator.measurements.retire import Retire
 from estimator.smoothing.chain.chain import Chain
@@ -64,6 +64,53 @@ def test_a_map_turned_as_a_whole_fits_as_it_did_but_for_what_was_said_of_heading
     carried.add(chain, carried.shared(groups), there)
     slope = -difference(cost, there)[0]
     assert np.abs(chain.slope() - slope).max() < 0.02 * np.abs(slope).max() + 1e-3
+
+
+class Hardly(NamedTuple):
+    """A prior that hardly knows a beacon: its numbers among those of the prior, and among all unknowns."""
+
+    prior: Prior
+    at: slice
+    own: slice
+
+
+def hardly_knowing(layout: Layout, prior: Prior) -> Hardly:
+    """The same prior without what it knows of the first beacon of its window."""
+    number, start = next(iter(layout.stands.items()))
+    first = sum(SIZES[kind] for kind, _ in prior.keys[: prior.keys.index(("stand", number))])
+    at, matrix, vector = slice(first, first + 3), prior.matrix.copy(), prior.vector.copy()
+    matrix[at] = matrix[:, at] = vector[at] = 0.0
+    matrix[at, at] = 1e-6 * np.eye(3)
+    border = layout.length * layout.width + start
+    return Hardly(prior._replace(matrix=matrix, vector=vector), at, slice(border, border + 3))
+
+
+def test_a_place_that_the_prior_hardly_knows_is_looked_at_where_it_is() -> None:
+    layout, prior, x = LATER
+    hardly, at, own = hardly_knowing(layout, prior)
+    there = x.copy()
+    there[own] += np.array([4.0, -3.0, 0.0])
+    known = MarginalPrior(layout, prior).first(there)
+    assert np.hypot(*(known[own] - prior.reference[at])[:2]) < 1.0
+    unknown = MarginalPrior(layout, hardly).first(there)
+    assert (unknown[own] == there[own]).all()
+    others = np.setdiff1d(np.arange(layout.length * layout.width, len(x)), np.arange(own.start, own.stop))
+    assert np.abs(unknown[others] - x[others]).max() < 0.1
+
+
+def test_a_window_rests_wherever_a_place_was_thought_to_be_of_which_nothing_was_known() -> None:
+    layout, prior, x = LATER
+    hardly, at, own = hardly_knowing(layout, prior)
+    elsewhere = hardly.reference.copy()
+    elsewhere[at] += np.array([-14.0, 25.0, 0.0])
+    found, other = (
+        problem_of(layout.state, float(layout.grid[0]), hardly._replace(reference=reference)).solve(x)
+        for reference in (hardly.reference, elsewhere)
+    )
+    assert found.rests
+    assert other.rests
+    assert np.abs(other.x[own] - found.x[own]).max() < 0.05
+    assert np.abs(other.x - found.x).max() < 0.2
 
 
 def test_what_is_known_of_who_has_gone_does_not_hold_the_map() -> None:
