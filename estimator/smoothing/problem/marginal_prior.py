@@ -66,7 +66,8 @@ class MarginalPrior:
         base_m = np.array(layout.state.base_place()[:2])
         self.pivot_m = pivot(self._matrix, self._reference, changed, base_m)
         self._turning = np.concatenate([self._places, self._speeds])
-        self._known_per_m2 = known_per_m2(self._matrix, self._places)
+        # What is known of each place were all else held, the mean of two directions.
+        self._known_per_m2: Array = self._matrix.diagonal()[self._places].mean(axis=1)
         # Of what it hardly knows nothing can add up to what nobody measured: readings say where that is.
         hardly = self._places[self._known_per_m2 < KNOWN_M**-2]
         self._held = np.setdiff1d(np.flatnonzero(self._at >= self._size), hardly)
@@ -167,17 +168,6 @@ class MarginalPrior:
         """What the prior takes for deviations from its reference: see `gauge_turn.moved_from`."""
         pairs = self._places, self._speeds
         return np.asarray(moved_from(self._reference, x[self._at], *pairs, self.pivot_m, turned_by))
-
-
-def known_per_m2(matrix: Array, places: Indices) -> Array:
-    """What a Kirchhoff matrix knows of each place, were all else held: mean of two directions, m (1/m²).
-
-    Args:
-        matrix: n × n.
-        places: which of its numbers are east and north of places, m × 2.
-    """
-    found: Array = matrix.diagonal()[places].mean(axis=1)
-    return found
 
 
 def _turning(prior: Prior, columns: Indices, kept: Indices, still: Collection[int]) -> Turning:
