@@ -8,6 +8,8 @@ from estimator.graph.dense import Array
 
 ELLIPSE_95 = 5.991464547107979
 """95th percentile of χ² with two degrees of freedom: 2.448 standard deviations."""
+ELLIPSE_999, ELSEWHERE_M = 13.815510557964274, 2.0
+"""Outside the 99.9 % ellipse, and farther than so from where he is shown, somebody is surely elsewhere."""
 
 
 class Errors(NamedTuple):
@@ -24,6 +26,7 @@ class Errors(NamedTuple):
         max_percent: `max_m` in percent of the way walked.
         coverage: share of true positions inside the 95 % ellipse.
         nees: mean normalised squared error per degree of freedom, horizontal; 1 is honest.
+        misleading: share of epochs at which the truth is surely elsewhere: see `ELSEWHERE_M`.
     """
 
     rmse_m: float
@@ -36,6 +39,7 @@ class Errors(NamedTuple):
     max_percent: float
     coverage: float
     nees: float
+    misleading: float
 
 
 def rigid_fit(source: Array, target: Array) -> tuple[Array, Array]:
@@ -74,11 +78,12 @@ def errors(estimated: Array, truth: Array, covariance: Array | None, distance_m:
     horizontal = np.hypot(off[:, 0], off[:, 1])
     rotation, translation = rigid_fit(estimated[:, :2], truth[:, :2])
     aligned = estimated[:, :2] @ rotation.T + translation - truth[:, :2]
-    coverage = nees = float("nan")
+    coverage = nees = misleading = float("nan")
     if covariance is not None:
         solved = np.linalg.solve(covariance[:, :2, :2], off[:, :2, None])[:, :, 0]
         squared = np.einsum("mi,mi->m", off[:, :2], solved)
         coverage, nees = float((squared <= ELLIPSE_95).mean()), float(squared.mean() / 2.0)
+        misleading = float(((squared > ELLIPSE_999) & (horizontal > ELSEWHERE_M)).mean())
     mean, largest = float(horizontal.mean()), float(horizontal.max())
     return Errors(
         rmse_m=float(np.sqrt((horizontal**2).mean())),
@@ -91,6 +96,7 @@ def errors(estimated: Array, truth: Array, covariance: Array | None, distance_m:
         max_percent=100.0 * largest / distance_m,
         coverage=coverage,
         nees=nees,
+        misleading=misleading,
     )
 
 

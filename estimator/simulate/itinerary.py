@@ -13,6 +13,8 @@ from estimator.simulate.walking import Leg, walk
 class Itinerary:
     """Moves of one responder, one after the other.
 
+    `level` is the storey that he has come to.
+
     Args:
         start_m: where he stands at first (m).
         beside_m: he keeps this far north of the corridor's middle (m).
@@ -24,7 +26,7 @@ class Itinerary:
         self.beside_m = beside_m
         self.t_s = 0.0
         self._at = start_m
-        self._level = 0
+        self.level = 0
         self._legs: list[Leg] = []
         self._stand_s = 0.0
         self._rng = rng
@@ -55,12 +57,12 @@ class Itinerary:
 
     def advance(self, x_m: float, speed_mps: float) -> "Itinerary":
         """Along the corridor to `x_m`."""
-        return self.go([corridor(x_m, self._level, self.beside_m)], speed_mps)
+        return self.go([corridor(x_m, self.level, self.beside_m)], speed_mps)
 
     def take_stairs(self, stairwell: str, to_level: int, speed_mps: float) -> "Itinerary":
         """To the stairwell along the corridor, and up or down to `to_level`."""
-        self.go(climb(stairwell, self._level, to_level, self.beside_m), speed_mps)
-        self._level = to_level
+        self.go(climb(stairwell, self.level, to_level, self.beside_m), speed_mps)
+        self.level = to_level
         return self
 
     def search(self, room: Room, speed_mps: float) -> "Itinerary":

@@ -33,6 +33,14 @@ def test_honest_covariances_cover_95_percent_and_have_a_nees_of_one() -> None:
     assert found.nees == pytest.approx(1.0, abs=0.05)
 
 
+def test_who_is_metres_off_and_sure_of_it_is_shown_elsewhere() -> None:
+    off_m = np.array([[1.9, 0.0, 0.0], [2.1, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 8.0, 0.0]])
+    sigma_m = np.array([0.1, 0.5, 2.0, 2.0])
+    covariance = np.eye(3) * sigma_m[:, None, None] ** 2
+    found = errors(off_m, np.zeros((4, 3)), covariance, 100.0)
+    assert found.misleading == 0.5  # 1.9 m is near enough, and 6 m within three of two metres
+
+
 def test_tracks_of_different_length_are_refused() -> None:
     with pytest.raises(ValueError, match="cannot compare"):
         errors(np.zeros((2, 3)), np.zeros((3, 3)), None, 1.0)
