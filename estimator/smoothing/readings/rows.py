@@ -15,7 +15,6 @@ from estimator.fusion.readings import echoes
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array, Indices
 from estimator.graph.parallel import in_shares
-from estimator.graph.scatter import ROW
 from estimator.measurements.bearing import wrap
 from estimator.smoothing.keyframes.ends import FREE, UNIT, faced, place_ends
 from estimator.smoothing.keyframes.ground import ground_of
@@ -106,8 +105,6 @@ class Rows:
         self.told: Array = self.nominal
         self._alone, self._bearings = self.nominal, found.bearings
         self._usual_noise: Array = self.noise
-        if not layout.lost:
-            self.columns = self.columns[:, :ROW].copy()
         self._white, self._common = self.nominal**2, np.zeros(len(self.nominal))
         self._inside, self._strongest, self._unsure_m2 = found.inside, found.strongest, widened(layout, found)
         speeds = fix_speeds(self.singles, found.readings.off[:, 1], ledger.table("poses"))

@@ -81,13 +81,14 @@ def arrange(
     t, nominal, alike, noise = np.empty(count), np.empty(count), np.ones(count), np.empty((count, 3))
     sharing = np.zeros(count)
     found, source = np.empty(count, dtype=np.int64), np.full(count, -1)
-    columns = np.full((count, 2 * size + 4), -1)
+    shared = 4 if (extra[:, 3] >= 0).any() else 3
+    columns = np.full((count, 2 * size + shared), -1)
     for i in range(m):
         kind = int(pairs[i, 1])
         t[i], found[i], nominal[i], alike[i] = pairs[i, 0], slab[i], pairs[i, 5], pairs[i, 8]
         if kind < BEARING:
             source[i] = int(pairs[i, 6])
-        for c in range(4):
+        for c in range(shared):
             columns[i, 2 * size + c] = extra[i, c]
         for c in range(size):
             columns[i, c], columns[i, size + c] = a.columns[i, c], b.columns[i, c]
