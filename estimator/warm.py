@@ -30,6 +30,7 @@ from estimator.graph.kirchhoff import Kirchhoff
 from estimator.graph.right_sides import carry, carry_back
 from estimator.graph.robust import cauchy_cost, mixture_cost, prior_cost, total_cost, weigh
 from estimator.graph.scatter import ROW, scatter_rows
+from estimator.graph.shared_errors import eliminate_shared, sharing
 from estimator.graph.symmetric import full
 from estimator.graph.triangular import inverted
 from estimator.graph.variable import Variable
@@ -72,6 +73,7 @@ from estimator.smoothing.readings.linearisation import (
     separations,
 )
 from estimator.smoothing.readings.obstructed import excess
+from estimator.smoothing.readings.shadows import take_shadows
 from estimator.smoothing.readings.sharing import powers_sharing
 from estimator.smoothing.readings.stacked import scattered, sigmas
 from estimator.smoothing.readings.thinning import once_a_second
@@ -125,7 +127,10 @@ def _warm_chain() -> None:
     one, x = np.ones(1), np.zeros(n)
     couple(columns, n, n, np.zeros(1, dtype=np.int64), np.zeros((1, s), dtype=np.bool_))
     localise(columns, n, n, slab, np.zeros((2, n + s), dtype=np.int64))
-    scatter_rows(slab, slab, columns, np.zeros((1, ROW)), one, one, diagonal, wide, corner, rest)
+    linear = slab, columns, np.zeros((1, ROW)), one, one, diagonal, wide, corner, rest
+    scatter_rows(slab, *linear)
+    eliminate_shared(sharing(slab, slab, 0), *linear)
+    take_shadows(sharing(slab, slab, 0), one, np.zeros((1, 3)), one.copy())
     between, states = np.zeros((1, 12)), np.zeros((k, n))
     motion = unit_motion(between, one, states)
     misfit(motion)

@@ -5,9 +5,9 @@ public sets plaza1, danis and hanyang, and the scenarios of `estimator.simulate`
 therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M`, `SCALE_SIGMA`,
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
 `FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `RSSI_POWER_DBM` and its sigma, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE`,
-`WALL_M`, `EXCESS_M` and the two after it, `UNHEARD_MEMORY_S`,
-`SET_OFF_BIAS_RADPS` (with plaza2 in view as well), `NO_BODY_M`, from which probability on bodies are taken to
-be seen, and that the spread of gyro biases is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm.
+`WALL_M`, `EXCESS_M` and the two after it, `UNHEARD_MEMORY_S`, `SET_OFF_BIAS_RADPS` (with plaza2 in view as
+well), `NO_BODY_M`, from which probability on bodies are taken to be seen, and that the spread of gyro biases
+is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm.
 "Measured" stands beside figures that public recordings show.
 
 Some stand in compiled functions, which keep the number that they were compiled with: after a change remove
@@ -260,8 +260,9 @@ others."""
 
 SHARED_NOISE = 0.3
 """Share of a reading's variance that is the link's own until an end moves on, before it is learned."""
-SHARED_M = 4.0
-"""A room's width: having walked it, one looks through other walls."""
+SHARED_M, PLACE_SHARED = 4.0, 0.5
+"""A room's width: having walked it, one looks through other walls. And the share of what powers of a link
+have in common that is its bearer's place's, for all that he hears there (3GPP TR 36.942, shadowing)."""
 SHARED_S = 600.0
 FREE_WAY_MPS = 0.5
 NOISE_MEMORY = 300.0

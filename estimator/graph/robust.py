@@ -55,6 +55,30 @@ def likelier(least: float, cost: float) -> float:
     return 0.0 if cost - least > NEGLIGIBLE else float(np.exp(min(least - cost, 0.0)))
 
 
+@njit(cache=True, forceinline=True, error_model="numpy")
+def weigh_one(
+    residual: float, sigma: float, predicted: float, outliers: float, shift: float, spread: float
+) -> tuple[float, float, float]:
+    """One reading's information, residual and probability of the good noise: see `weigh`."""
+    good_variance = sigma**2
+    bad_variance = good_variance + spread**2
+    wild_variance = good_variance + (FARTHER * spread) ** 2
+    good_total, bad_total = good_variance + predicted, bad_variance + predicted
+    wild_total, off = wild_variance + predicted, (residual - shift) ** 2
+    by_good = 0.5 * residual**2 / good_total
+    by_bad, by_wild = 0.5 * off / bad_total, 0.5 * off / wild_total
+    # The likeliest one is put before the sum, so that the sum is never nil.
+    least = by_good if outliers == 0.0 else min(by_good, by_bad, by_wild)
+    usual = (1.0 - outliers) / np.sqrt(good_total) * likelier(least, by_good)
+    bad = (1.0 - WILD) * outliers / np.sqrt(bad_total) * likelier(least, by_bad)
+    wild = WILD * outliers / np.sqrt(wild_total) * likelier(least, by_wild)
+    total = usual + bad + wild
+    from_good = usual / total / good_variance
+    from_bad = (bad / bad_variance + wild / wild_variance) / total
+    information = from_good + from_bad
+    return information, residual - shift * from_bad / information, usual / total
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def weigh(
     residual: Array, sigma: Array, predicted: Array, outliers: Array, shift: Array, spread: Array
@@ -75,24 +99,8 @@ def weigh(
     m = len(residual)
     information, pulled, good = np.empty(m), np.empty(m), np.empty(m)
     for i in range(m):
-        good_variance = sigma[i] ** 2
-        bad_variance = good_variance + spread[i] ** 2
-        wild_variance = good_variance + (FARTHER * spread[i]) ** 2
-        good_total, bad_total = good_variance + predicted[i], bad_variance + predicted[i]
-        wild_total, off = wild_variance + predicted[i], (residual[i] - shift[i]) ** 2
-        by_good = 0.5 * residual[i] ** 2 / good_total
-        by_bad, by_wild = 0.5 * off / bad_total, 0.5 * off / wild_total
-        # The likeliest one is put before the sum, so that the sum is never nil.
-        least = by_good if outliers[i] == 0.0 else min(by_good, by_bad, by_wild)
-        usual = (1.0 - outliers[i]) / np.sqrt(good_total) * likelier(least, by_good)
-        bad = (1.0 - WILD) * outliers[i] / np.sqrt(bad_total) * likelier(least, by_bad)
-        wild = WILD * outliers[i] / np.sqrt(wild_total) * likelier(least, by_wild)
-        total = usual + bad + wild
-        good[i] = usual / total
-        from_good = good[i] / good_variance
-        from_bad = (bad / bad_variance + wild / wild_variance) / total
-        information[i] = from_good + from_bad
-        pulled[i] = residual[i] - shift[i] * from_bad / information[i]
+        noise = sigma[i], predicted[i], outliers[i], shift[i], spread[i]
+        information[i], pulled[i], good[i] = weigh_one(residual[i], *noise)
     return Weighted(information, pulled, good)
 
 

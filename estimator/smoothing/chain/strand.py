@@ -16,6 +16,7 @@ from estimator.graph.chain_kernels import Integers, eliminate, selected_inverse,
 from estimator.graph.dense import Array, mended
 from estimator.graph.right_sides import carry, carry_back
 from estimator.graph.scatter import scatter_rows
+from estimator.graph.shared_errors import SharedErrors, eliminate_shared
 from estimator.smoothing.chain.groups import Group, GroupedReadings
 from estimator.smoothing.keyframes.walks import Motion
 
@@ -82,6 +83,20 @@ class Strand:
         if len(chosen):
             blocks = self.diagonal, self.wide, self.corner, self.corner_gradient
             scatter_rows(chosen, placed.slab, placed.columns, jacobian, information, residual, *blocks)
+
+    def share(
+        self,
+        shared: SharedErrors,
+        placed: GroupedReadings,
+        jacobian: Array,
+        information: Array,
+        residual: Array,
+    ) -> None:
+        """Take off what its rows do not tell, for they share errors: see `eliminate_shared`."""
+        if len(shared.own):
+            blocks = self.diagonal, self.wide, self.corner, self.corner_gradient
+            rows = placed.slab, placed.columns, jacobian, information, residual
+            eliminate_shared(shared, *rows, *blocks)
 
     def add_motions(self, ways: Sequence[WalkMotion]) -> None:
         """Add the motion of its walks between keyframes.

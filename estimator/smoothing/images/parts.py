@@ -125,7 +125,7 @@ class Parts:
         layout, rows = self.problem.layout, self.problem.rows
         own = rows.of([layout.walks[i].number for i in numbers.walks])
         border = self.x[layout.length * layout.width :]
-        left = hold_quadratic(
-            np.flatnonzero(~own), self._border, self._linear.jacobian, self._weighted, border
-        )
+        others = np.flatnonzero(~own)
+        readings = self._border, self._linear.jacobian, self._weighted
+        left = hold_quadratic(others, rows.shadows.among(others), *readings, border)
         return own & (rows.slab <= numbers.until), left

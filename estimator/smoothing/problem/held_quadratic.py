@@ -8,6 +8,7 @@ from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.graph.robust import Weighted
 from estimator.graph.scatter import scatter_rows
+from estimator.graph.shared_errors import SharedErrors, eliminate_shared
 from estimator.smoothing.chain.chain import Chain
 
 
@@ -37,12 +38,18 @@ class HeldQuadratic(NamedTuple):
 
 
 def hold_quadratic(
-    chosen: Integers, columns: Integers, jacobian: Array, weighted: Weighted, border: Array
+    chosen: Integers,
+    shared: SharedErrors,
+    columns: Integers,
+    jacobian: Array,
+    weighted: Weighted,
+    border: Array,
 ) -> HeldQuadratic:
     """What some of m readings say of the border.
 
     Args:
         chosen: which.
+        shared: which of these share errors.
         columns: where each depends on the border, m × c; −1: on something else, or on nothing.
         jacobian: their derivatives, m × c.
         weighted: how they are weighed.
@@ -51,6 +58,9 @@ def hold_quadratic(
     size = len(border)
     nothing, slab = np.zeros((1, 0, 0)), np.zeros(len(columns), dtype=np.int64)
     matrix, vector = np.zeros((size, size)), np.zeros(size)
-    rows = columns, jacobian, weighted.information, weighted.residual
-    scatter_rows(chosen, slab, *rows, nothing, np.zeros((1, 0, size + 1)), matrix, vector)
+    rows = slab, columns, jacobian, weighted.information, weighted.residual
+    blocks = nothing, np.zeros((1, 0, size + 1)), matrix, vector
+    scatter_rows(chosen, *rows, *blocks)
+    if len(shared.own):
+        eliminate_shared(shared, *rows, *blocks)
     return HeldQuadratic(matrix, vector, border)

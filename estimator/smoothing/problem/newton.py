@@ -9,7 +9,7 @@ from estimator.graph.robust import Weighted
 from estimator.smoothing.problem.objective import Objective
 from estimator.smoothing.problem.search_direction import Direction, NewtonStep, conjugate_step
 from estimator.smoothing.problem.solution import Solution, Trial
-from estimator.smoothing.readings.rows import Linearised
+from estimator.smoothing.readings.linearised import Linearised
 
 ACCEPTED = 1e-3
 """Rise of the negative log likelihood that counts as rounding."""

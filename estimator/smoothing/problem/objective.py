@@ -11,6 +11,7 @@ from estimator.fusion.memory.prior import Prior
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array, Indices
 from estimator.graph.robust import Weighted, mixture_cost, prior_cost, total_cost
+from estimator.graph.shared_errors import SharedErrors
 from estimator.smoothing.chain.chain import Chain
 from estimator.smoothing.chain.strand import Strand, WalkMotion
 from estimator.smoothing.keyframes.ends import faced
@@ -25,7 +26,8 @@ from estimator.smoothing.problem.marginal_prior import MarginalPrior
 from estimator.smoothing.problem.solution import Trial
 from estimator.smoothing.problem.sparsity import Sparsity
 from estimator.smoothing.readings.curvature import BentPairs, NormalMatrix, Numbers, add_curvature
-from estimator.smoothing.readings.rows import Linearised, Rows
+from estimator.smoothing.readings.linearised import Linearised
+from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.readings.weights import weigh_readings
 
 
@@ -189,12 +191,15 @@ class Objective:
         off, ones, jacobian = self._mean - x[self._at], np.ones((len(self._at), 1)), linear.jacobian
         pulls = self.lost.weighed(x)
 
-        def add(strand: Strand, priors: Indices, readings: Indices, losses: Indices) -> None:
+        def add(
+            strand: Strand, priors: Indices, readings: Indices, shadows: SharedErrors, losses: Indices
+        ) -> None:
             strand.add(known, priors, ones, certain, off)
             strand.add(self.coupled.losses, losses, self.lost.jacobian, pulls.information, pulls.residual)
             strand.add(placed, readings, jacobian, information, weighted.residual)
+            strand.share(shadows, placed, jacobian, information, weighted.residual)
 
-        chain.each(add, known.parts, placed.parts, self.coupled.losses.parts)
+        chain.each(add, known.parts, placed.parts, self.coupled.shadows, self.coupled.losses.parts)
         return chain
 
     def add_curvature(self, chain: Chain, x: Array, weighted: Weighted, signed: bool) -> None:

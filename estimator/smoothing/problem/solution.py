@@ -9,7 +9,7 @@ from estimator.graph.dense import Array
 from estimator.graph.robust import Weighted
 from estimator.smoothing.chain.chain import Chain, Remainder
 from estimator.smoothing.keyframes.walks import Motion
-from estimator.smoothing.readings.rows import Linearised
+from estimator.smoothing.readings.linearised import Linearised
 
 
 @dataclass(frozen=True, eq=False)

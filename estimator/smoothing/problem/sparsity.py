@@ -4,6 +4,7 @@ import numpy as np
 
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Indices
+from estimator.graph.shared_errors import SharedErrors
 from estimator.smoothing.chain.groups import GroupedReadings, Groups
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.problem.marginal_prior import MarginalPrior, SharedNumbers
@@ -17,6 +18,7 @@ class Sparsity:
         groups: those walks that hang together.
         rows: the readings among the groups.
         pairs: those of them that are pairs, of each group.
+        shadows: which of each group lie in which shadow.
         priors: the walks' own priors among the groups.
         losses: what is known of losses, among the groups.
         shared: what each group has in common with the prior of the window.
@@ -39,6 +41,7 @@ class Sparsity:
         self.rows: GroupedReadings = groups.placed(rows.slab, rows.columns)
         pairs = len(rows.pairs)
         self.pairs: list[Integers] = [part[: np.searchsorted(part, pairs)] for part in self.rows.parts]
+        self.shadows: list[SharedErrors] = [rows.shadows.among(part) for part in self.rows.parts]
         size, width = layout.length * layout.width, max(layout.width, 1)
         slab = np.where(at < size, at // width, 0)
         columns = np.where(at < size, at % width, at - size + layout.width)

@@ -146,7 +146,7 @@ def residuals(readings: Readings, numbers: Array, first: int, last: int, found: 
         if readings.off[i, 1] >= 0:
             here -= readings.speed[i] * x[readings.off[i, 1]]
         found[m + i] = readings.told[i] - here
-    for k in range(max(first - m - n, 0), last - m - n):
+    for k in range(max(first - m - n, 0), min(last - m - n, 3 * len(by.kind))):
         i, c = k // 3, k % 3
         place_end(by, i, numbers, a, turned)
         place_end(crumb, i, numbers, b, turned)
@@ -202,7 +202,7 @@ def jacobians(readings: Readings, numbers: Array, first: int, last: int, found: 
             row[3:6] = by_a[axis]
         if readings.off[i, 1] >= 0:
             row[13] = -readings.speed[i]
-    for k in range(max(first - m - n, 0), last - m - n):
+    for k in range(max(first - m - n, 0), min(last - m - n, 3 * len(by.kind))):
         row, i, c = found[m + n + k], k // 3, k % 3
         by_a[:], by_b[:] = 0.0, 0.0
         place_end(by, i, numbers, a, by_a)
@@ -264,7 +264,7 @@ def scale_sigmas(
 
 @njit(cache=True)
 def add_reckoning_noise(jacobian: Array, a: Array, b: Array, on: Array, by: Array, sigma: Array) -> None:
-    """Add to the noise of all rows the dead reckoning noise of their ends since their keyframes.
+    """Add to the noise of all readings the dead reckoning noise of their ends since their keyframes.
 
     Args:
         jacobian: of the rows, m × c.
@@ -275,7 +275,7 @@ def add_reckoning_noise(jacobian: Array, a: Array, b: Array, on: Array, by: Arra
         sigma: standard deviations, m, changed.
     """
     pairs, singles = len(a), len(on)
-    for i in range(len(sigma)):
+    for i in range(pairs + singles + 3 * len(by)):
         variance = sigma[i] ** 2
         for c in range(3):
             if i < pairs:

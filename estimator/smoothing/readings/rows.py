@@ -15,6 +15,7 @@ from estimator.fusion.readings import echoes
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array, Indices
 from estimator.graph.parallel import in_shares
+from estimator.graph.shared_errors import SharedErrors
 from estimator.measurements.bearing import wrap
 from estimator.smoothing.keyframes.ends import FREE, UNIT, faced, place_ends
 from estimator.smoothing.keyframes.ground import ground_of
@@ -33,6 +34,7 @@ from estimator.smoothing.readings.linearisation import (
 )
 from estimator.smoothing.readings.obstructed import excess
 from estimator.smoothing.readings.partial import partial
+from estimator.smoothing.readings.shadows import Shadows, shadows_of, take_shadows, with_shadows
 from estimator.smoothing.readings.sharing import powers_sharing
 from estimator.smoothing.readings.stacked import NOISES, StackedReadings, scattered, sigmas
 from estimator.smoothing.readings.thinning import once_a_second
@@ -44,28 +46,8 @@ PER_ROW = ("t", "slab", "sigma", "shift", "noise", "nominal", "source", "alike",
 T = TypeVar("T")
 
 
-class Linearised:
-    """Rows at an estimate.
-
-    Args:
-        residual: z − h(x) − shift, m.
-        differentiate: makes the derivatives.
-
-    Attributes:
-        residual: z − h(x) − shift, m.
-    """
-
-    def __init__(self, residual: Array, differentiate: Callable[[], Array]) -> None:
-        self.residual, self._differentiate = residual, differentiate
-
-    @cached_property
-    def jacobian(self) -> Array:
-        """Derivatives, m × c: made when first asked for, for where a solution ends few ask."""
-        return self._differentiate()
-
-
 class Rows:
-    """The readings of a window: pairs, then singles, then drops (three rows each).
+    """The readings of a window: pairs, then singles, then drops (three rows each), then their shadows.
 
     Attributes:
         t: epoch of each row, m (s).
@@ -98,14 +80,18 @@ class Rows:
         found = window_readings(told, since_t, ground, *known)
         self._rows: StackedReadings = found.rows
         self.pairs, self.singles, self.drops = found.told
-        self.t, self.slab, self.columns, self.noise, self.nominal, self.source, self.alike, _ = found.rows
-        self.turns: NDArray[np.bool_] = found.turns
+        kinds = found.readings.a.kind, found.readings.b.kind
+        self.shadows: Shadows = shadows_of(layout, found.rows, self.pairs, kinds)
+        rows = with_shadows(found.rows, layout.grid, self.shadows)
+        self.t, self.slab, self.columns, self.noise, self.nominal, self.source, self.alike, _ = rows
+        self.turns: NDArray[np.bool_] = np.append(found.turns, np.zeros(len(self.shadows.slab), dtype=bool))
         self.shift: Array = np.zeros(len(self.nominal))
         self.sigma: Array = self.nominal.copy()
         self.told: Array = self.nominal
         self._alone, self._bearings = self.nominal, found.bearings
         self._usual_noise: Array = self.noise
-        self._white, self._common = self.nominal**2, np.zeros(len(self.nominal))
+        self._white, self._common = self._rows.nominal**2, np.zeros(len(self._rows.t))
+        self._shadow_db = self.nominal[len(self._rows.t) :]
         self._inside, self._strongest, self._unsure_m2 = found.inside, found.strongest, widened(layout, found)
         speeds = fix_speeds(self.singles, found.readings.off[:, 1], ledger.table("poses"))
         ahead = ahead_in(layout, ground, found.readings, self.pairs, self.slab)
@@ -123,7 +109,7 @@ class Rows:
         named[table[named[table[:, 2].astype(np.intp)], 1].astype(np.intp)] = True
         one, other, single, crumb, by = self._nodes
         dropped = np.repeat(named[crumb] | named[by], 3)
-        return np.concatenate([named[one] | named[other], named[single], dropped])
+        return np.concatenate([named[one] | named[other], named[single], dropped, named[self.shadows.bearer]])
 
     @cached_property
     def _nodes(self) -> tuple[Indices, ...]:
@@ -137,19 +123,23 @@ class Rows:
         Args:
             numbers: of the part.
             x: the window's estimate, flat: what moves and is not in the part is held where it is.
-            chosen: which rows, m; all three of a drop, or none.
+            chosen: which rows, m; all three of a drop, or none. Shadows go with what lies in them.
         """
-        m, n = len(self.pairs), len(self.singles)
+        m, n, chosen = len(self.pairs), len(self.singles), chosen[: len(self.shadows.of)]
         pairs, singles, drops = chosen[:m], chosen[m : m + n], chosen[m + n :: 3]
+        shadows, kept = self.shadows.some(chosen)
+        chosen = np.append(chosen, kept)
         unsure = zip(self._unsure_m2, (pairs, pairs, singles, drops), strict=True)
         other, columns = copy(self), self.columns[chosen]
-        vars(other).pop("_nodes", None)
+        for known in ("_nodes", "lying"):
+            vars(other).pop(known, None)
         for name in PER_ROW:
             setattr(other, name, getattr(self, name)[chosen])
         other.columns = np.where(columns >= 0, numbers.column[columns], -1)
         other.pairs, other.singles, other.drops = self.pairs[pairs], self.singles[singles], self.drops[drops]
         vars(other).update(
             floors=None if self.floors is None else self.floors[pairs],
+            shadows=shadows,
             _inside=self._inside[pairs],
             _strongest=self._strongest[pairs],
             _unsure_m2=tuple(each[some] for each, some in unsure),
@@ -171,7 +161,8 @@ class Rows:
         learned = np.array(told).reshape(-1, 3)
         walled = self._inside if walls else np.zeros_like(self._inside)
         white, common, outliers = scattered(learned, self._rows, self._readings.kind, walled)
-        self.noise[:, 0] = outliers
+        common, self._shadow_db = self.shadows.divided(common)
+        self.noise[: len(outliers), 0] = outliers
         self._usual_noise = self.noise.copy()
         echoes.tell(self.noise, self.pairs[:, ECHO], self.alike)
         self._white, self._common = white, common
@@ -198,7 +189,8 @@ class Rows:
         self._tell(white, common)
 
     def _tell(self, white: Array, common: Array) -> None:
-        self.told, self._alone = sigmas(white, common, self._rows), np.sqrt(white + common)
+        self.told = np.append(sigmas(white, common, self._rows), self._shadow_db)
+        self._alone = np.append(np.sqrt(white + common), self._shadow_db)
         self.sigma = self.told.copy()
 
     def rarer(self) -> tuple[Integers, Self]:
@@ -214,7 +206,8 @@ class Rows:
         other.noise = self._usual_noise
         sharing = self._rows.sharing.copy()
         sharing[chosen] = powers_sharing(self.pairs[chosen], alike[chosen], sharing[chosen] > 0.0)
-        told = sigmas(self._white, self._common, self._rows._replace(alike=other.alike, sharing=sharing))
+        rows = self._rows._replace(alike=other.alike[: len(sharing)], sharing=sharing)
+        told = np.append(sigmas(self._white, self._common, rows), self._shadow_db)
         other.sigma = np.sqrt(np.maximum(self.sigma**2 - self.told**2, 0.0) + told**2)
         return chosen, other
 
@@ -265,12 +258,19 @@ class Rows:
         return found
 
     def residual(self, x: Array) -> Array:
-        """Residuals z − h(x) − shift at an estimate x, flat."""
+        """Residuals z − h(x) − shift at an estimate x, flat, less what shadows take."""
         found = self._read(x)
         found -= self.shift
         if len(self._bearings):
             found[self._bearings] = wrap(found[self._bearings])
+        if len(self.shadows.slab):
+            take_shadows(self.lying, self.sigma, self.noise, found)
         return found
+
+    @cached_property
+    def lying(self) -> SharedErrors:
+        """Which rows lie in each shadow."""
+        return self.shadows.among(np.arange(len(self.shadows.of)))
 
     def jacobian(self, x: Array) -> Array:
         """Derivatives at an estimate x, flat, m × c."""
@@ -280,7 +280,7 @@ class Rows:
 
     def _read(self, x: Array) -> Array:
         """Residuals z − h(x) at an estimate, flat; bearings not yet wrapped."""
-        found, numbers = np.empty(len(self.nominal)), faced(x, self._readings.headings)
+        found, numbers = np.zeros(len(self.nominal)), faced(x, self._readings.headings)
         self.in_shares(lambda first, last: residuals(self._readings, numbers, first, last, found))
         return found
 

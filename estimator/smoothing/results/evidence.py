@@ -94,7 +94,9 @@ def explain(
     carried = np.einsum(
         "mk,mkc->mc", solved.linear.jacobian, np.where(flat[..., None] >= 0, across[flat], 0.0)
     )
-    power = solved.weighted.information * (carried**2).sum(axis=1) / total
+    carried = _shared_off(rows, solved.weighted.information, carried)
+    # What is thought of shadows beforehand is nobody's measurement.
+    power = (solved.weighted.information * (carried**2).sum(axis=1) / total)[: len(rows.shadows.of)]
     listed = [
         _row(state, rows, solved, flat, i, float(power[i])) for i in np.argsort(-power)[:HELD_MAX].tolist()
     ]
@@ -102,7 +104,7 @@ def explain(
     listed += _known(problem, solved, across, total)
     held = sorted(_joined(listed), key=lambda m: -m.share)[:HELD_MAX]
     held = [m for m in held if m.share > 1e-4]
-    bad = np.flatnonzero((solved.weighted.good < 0.5) & (rows.t > epoch - RECENT_S))
+    bad = np.flatnonzero(((solved.weighted.good < 0.5) & (rows.t > epoch - RECENT_S))[: len(power)])
     near = [
         _row(state, rows, solved, flat, i, float(power[i])) for i in bad[np.argsort(-rows.t[bad])].tolist()
     ]
@@ -116,6 +118,15 @@ def explain(
         rejected=rejected,
         rest=max(1.0 - sum(m.share for m in held), 0.0),
     )
+
+
+def _shared_off(rows: Rows, information: Array, carried: Array) -> Array:
+    """What rows carry, m × c, less what is carried off by the shadow in which each lies."""
+    shared, left = rows.lying, carried.copy()
+    for one, own in enumerate(shared.own.tolist()):
+        at = np.append(shared.rows[shared.ends[one] : shared.ends[one + 1]], own)
+        left[at] -= information[at] @ carried[at] / information[at].sum()
+    return left
 
 
 def _flat(layout: Layout, rows: Rows) -> Array:

@@ -81,6 +81,14 @@ def dense(chain: Chain) -> tuple[Array, Array]:
     return whole, chain.slope()
 
 
+def in_the_open(rows: Rows, residual: Array) -> Array:
+    """Residuals of rows with nothing taken off them for shadows."""
+    found, shared = residual.copy(), rows.lying
+    found[shared.rows] -= residual[np.repeat(shared.own, np.diff(shared.ends))]
+    found[shared.own] = 0.0
+    return found
+
+
 def unlikelihood(problem: Problem, solved: Solution) -> float:
     """−log marginal likelihood up to a constant, at a given estimate: cost + ½ log |H| + ½ Σ log |Q|."""
     motions = problem.motions(solved.x)

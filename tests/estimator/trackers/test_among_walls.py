@@ -29,7 +29,7 @@ from tests.estimator.ellipses import SURE, outside
 SECONDS = 360
 VEHICLES_M = {"engine": (12.0, -DEPTH_M - 8.0, 2.0), "ladder": (34.0, -DEPTH_M - 8.0, 2.0)}
 """On the side of the street."""
-SEEDS = (0, 1, 2)
+SEEDS = range(8)
 
 
 def night(seed: int) -> tuple[list[AnyReading], dict[str, TrueTrack]]:
@@ -87,11 +87,11 @@ def followed(readings: Sequence[AnyReading], names: Sequence[str]) -> dict[str, 
 
 
 def test_who_is_heard_too_weakly_by_vehicles_in_the_street_is_not_shown_elsewhere_as_sure() -> None:
-    """Of 2,160 seconds: with what walls take counted link by link, 453 as shown live and 955 looking back."""
+    """Of 5,760 seconds. With what walls take counted link by link, three of these nights have 453 and 955."""
     live = back = 0
     for seed in SEEDS:
         readings, tracks = night(seed)
         live += surely_elsewhere(followed(readings, list(tracks)), tracks)
         back += surely_elsewhere(smoother("kirchhoff", TrackerSettings()).smooth(readings), tracks)
-    assert live < 40
+    assert live < 80
     assert back == 0

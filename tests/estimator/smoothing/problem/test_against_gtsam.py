@@ -15,10 +15,10 @@ import pytest
 from estimator.fusion.memory.prior import SIZES
 from estimator.graph.dense import Array, Indices
 from estimator.measurements import AnyReading
-from estimator.simulate import paper_a
+from estimator.simulate import late_gateway, paper_a
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.newton import METRES_OFF, Problem
-from tests.estimator.smoothing.windows import fused, problem_of
+from tests.estimator.smoothing.windows import fused, in_the_open, problem_of
 from tests.estimator.walks import two_responders
 
 NO_OUTLIERS = 1e-200
@@ -28,14 +28,17 @@ AT_REST = 1e-9
 
 
 class Blocks:
-    """The unknowns as GTSAM's variables: six of a walk and keyframe, three of what stands, of a loss one."""
+    """The unknowns as GTSAM's variables: six of a walk and keyframe, three of what stands, of a loss one.
+
+    What a place takes of all powers is one as well; the window finds it by the others.
+    """
 
     def __init__(self, problem: Problem, start: Array) -> None:
-        self.problem, self.start = problem, start
-        layout = problem.layout
+        layout, self.size = problem.layout, len(start)
+        self.problem, self.start = problem, np.append(start, np.zeros(len(problem.rows.shadows.slab)))
         size = layout.length * layout.width
         self.columns: list[Indices] = []
-        self.key_of = np.full(len(start), -1)
+        self.key_of = np.full(len(self.start), -1)
         for i, walk in enumerate(layout.walks):
             for k in range(walk.first, walk.last + 1):
                 self._add(k * layout.width + STATES * i + np.arange(STATES))
@@ -45,7 +48,9 @@ class Blocks:
             self._add(size + first + np.arange(SIZES[kind]))
         for loss in layout.lost.values():
             self._add(size + loss.column + np.arange(1))
-        self.move(start)
+        for shadow in range(self.size, len(self.start)):
+            self._add(np.array([shadow]))
+        self.move(self.start)
 
     def _add(self, columns: Indices) -> None:
         self.key_of[columns] = len(self.columns)
@@ -82,8 +87,17 @@ class Blocks:
 
     def move(self, x: Array) -> None:
         """Linearise all at once: what a factor says depends on its own keys only."""
-        self.at = x
-        self.linear, self.motions = self.problem.linearise(x), self.problem.motions(x)
+        self.at, known = x, x[: self.size]
+        self.linear, self.motions = self.problem.linearise(known), self.problem.motions(known)
+        self.residual = in_the_open(self.problem.rows, self.linear.residual)
+        off = self.of_shadow() >= 0
+        self.residual[off] -= x[self.of_shadow()[off]]
+
+    def of_shadow(self) -> Indices:
+        """Where what a place takes of each row is among the unknowns; −1: nothing is."""
+        shadows = self.problem.rows.shadows
+        of = np.append(shadows.of, np.arange(len(shadows.slab)))
+        return np.where(of >= 0, self.size + of, -1)
 
 
 def motion_factors(blocks: Blocks, frozen: Array) -> list[Any]:
@@ -114,6 +128,7 @@ def row_factors(blocks: Blocks) -> list[Any]:
         inside, rows.slab[:, None] * layout.width + rows.columns, size + rows.columns - layout.width
     )
     flat[rows.columns < 0] = -1
+    flat = np.column_stack([flat, blocks.of_shadow()])
     alike: dict[tuple[int, ...], list[int]] = defaultdict(list)
     for row, columns in enumerate(flat):
         alike[tuple(np.unique(blocks.key_of[columns[columns >= 0]]).tolist())].append(row)
@@ -124,10 +139,11 @@ def row_factors(blocks: Blocks) -> list[Any]:
         belongs = (flat[chosen][:, :, None] == own).astype(np.float64)
 
         def error(chosen: Indices = chosen) -> Array:
-            return -blocks.linear.residual[chosen]
+            return -blocks.residual[chosen]
 
         def slopes(chosen: Indices = chosen, belongs: Array = belongs) -> Array:
-            return np.asarray(np.einsum("mc,mcn->mn", blocks.linear.jacobian[chosen], belongs))
+            by = np.column_stack([blocks.linear.jacobian[chosen], np.ones(len(chosen))])
+            return np.asarray(np.einsum("mc,mcn->mn", by, belongs))
 
         sigmas = gtsam.noiseModel.Diagonal.Sigmas(rows.sigma[chosen])
         found.append(blocks.factor(list(keys), sigmas, error, slopes))
@@ -182,7 +198,7 @@ def optimum(problem: Problem, start: Array, frozen: Array) -> Array:
     settings.setAbsoluteErrorTol(1e-12)
     optimizer = gtsam.LevenbergMarquardtOptimizer(graph, blocks.values(), settings)
     values = optimizer.optimize()
-    return blocks.flat(values)
+    return blocks.flat(values)[: blocks.size]
 
 
 def paper_a_walk() -> list[AnyReading]:
@@ -202,7 +218,11 @@ def misfit(problem: Problem, x: Array) -> float:
     return problem.cost(x, linear.residual, problem.motions(x)) - constant
 
 
-@pytest.fixture(scope="module", params=[paper_a_walk, ranges_to_unknown_beacons])
+def powers_among_walls() -> list[AnyReading]:
+    return [r for r in late_gateway.build(1).readings if r.t <= 60.0]
+
+
+@pytest.fixture(scope="module", params=[paper_a_walk, ranges_to_unknown_beacons, powers_among_walls])
 def problem(request: pytest.FixtureRequest) -> Problem:
     found = problem_of(fused(request.param()))
     found.rows.noise[:, 0] = found.lost.noise[1] = NO_OUTLIERS
@@ -214,6 +234,10 @@ def test_the_smoothed_solution_costs_no_more_than_gtsams_optimum(problem: Proble
     ours = problem.solve(start, METRES_OFF)
     theirs = optimum(problem, start, ours.x)
     assert misfit(problem, ours.x) <= 1.001 * misfit(problem, theirs)
+
+
+def test_what_places_take_of_powers_is_among_what_is_compared() -> None:
+    assert len(problem_of(fused(powers_among_walls())).rows.shadows.slab) > 10
 
 
 def test_solved_until_it_rests_everything_is_where_gtsam_puts_it(problem: Problem) -> None:

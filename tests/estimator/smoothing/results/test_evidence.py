@@ -10,6 +10,8 @@ from estimator.measurements.displacement import Displacement
 from estimator.measurements.position import Position
 from estimator.measurements.range import Range
 from estimator.measurements.retire import Retire
+from estimator.simulate import late_gateway
+from estimator.smoothing.results import evidence
 from estimator.trackers.base import TrackerSettings
 from tests.estimator.walks import behind_a_wall, standing_radios, two_responders
 
@@ -26,6 +28,15 @@ def test_the_shares_of_all_currents_add_up_to_one() -> None:
     assert sum(m.share for m in found.held) + found.rest == pytest.approx(1.0, abs=1e-9)
     assert all(m.share >= 0.0 for m in found.held)
     assert [m.share for m in found.held] == sorted((m.share for m in found.held), reverse=True)
+
+
+def test_powers_hold_nobody_by_what_a_wall_around_him_takes_of_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(evidence, "HELD_MAX", 1_000_000)
+    told = [reading for reading in late_gateway.build(1).readings if reading.t <= 60.0]
+    found = SMOOTHER.evidence(told, "E7-1")
+    assert found is not None
+    assert sum(m.kind == "rssi" for m in found.held) > 20
+    assert 0.95 < sum(m.share for m in found.held) <= 1.0
 
 
 def test_who_has_hardly_been_measured_is_held_by_where_he_is_taken_to_have_begun() -> None:
