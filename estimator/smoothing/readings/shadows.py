@@ -18,6 +18,7 @@ from estimator.fusion.memory.state import FusionState
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array, Indices
 from estimator.graph.robust import weigh_one
+from estimator.graph.scatter import END
 from estimator.graph.shared_errors import SharedErrors, sharing
 from estimator.smoothing.keyframes.displacement_sums import LENGTH
 from estimator.smoothing.keyframes.ends import UNIT
@@ -29,8 +30,6 @@ LEAST_DB2 = 0.25
 """What shares less than half a dB is not asked."""
 SEARCHED = 4
 """So often a shadow is found anew by how likely its powers are to be outliers by then."""
-B = 6
-"""Where the columns of a second end begin."""
 
 
 class Shadows(NamedTuple):
@@ -92,7 +91,7 @@ def shadows_of(
     among = np.flatnonzero(asked)
     units = [ends[end][among] == UNIT for end in range(2)]
     # Who hears, if he has a unit: what is told is told at his place.
-    bearer = np.where(units[0], rows.columns[among, 0], rows.columns[among, B]) // STATES
+    bearer = np.where(units[0], rows.columns[among, 0], rows.columns[among, END]) // STATES
     heard = among[units[0] | units[1]]
     each, place = np.unique(rows.slab[heard] * walks + bearer[units[0] | units[1]], return_inverse=True)
     of[heard] = place
