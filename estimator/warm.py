@@ -74,7 +74,7 @@ from estimator.smoothing.readings.linearisation import (
 )
 from estimator.smoothing.readings.obstructed import excess
 from estimator.smoothing.readings.shadows import take_shadows
-from estimator.smoothing.readings.sharing import powers_sharing
+from estimator.smoothing.readings.sharing import powers_sharing, sharing_counts
 from estimator.smoothing.readings.stacked import scattered, sigmas
 from estimator.smoothing.readings.thinning import once_a_second
 from estimator.smoothing.readings.window_readings import LedgerRows, window_readings
@@ -131,6 +131,7 @@ def _warm_chain() -> None:
     scatter_rows(slab, *linear)
     eliminate_shared(sharing(slab, slab, 0), *linear)
     take_shadows(sharing(slab, slab, 0), one, np.zeros((1, 3)), one.copy())
+    sharing_counts(one)
     between, states = np.zeros((1, 12)), np.zeros((k, n))
     motion = unit_motion(between, one, states)
     misfit(motion)

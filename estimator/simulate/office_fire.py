@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.measurements import Alarm, AnyReading, Node, Position, Retire
+from estimator.measurements import Alarm, AnyReading, Node, Retire
 from estimator.measurements.base import PairReading
 from estimator.simulate.base import FloatArray, Report, Scenario, TrueTrack, in_posting_order
 from estimator.simulate.breadcrumbs import drop_along, kicked
@@ -28,7 +28,7 @@ from estimator.simulate.team import (
     measured,
     radios_of,
 )
-from estimator.simulate.uav import circle, window_ranges
+from estimator.simulate.uav import circle, flight_readings
 from estimator.simulate.vitals import Breathing, pressure_readings, status_readings
 
 NAME = "office-fire"
@@ -68,7 +68,8 @@ def build(seed: int) -> Scenario:
     readings += [introduce(node, truth, rng, node[:2]) for node, truth in tracks.items()]
     readings += introduce_dropped(crumbs.values(), {"E7-1": "E7", "L3-1": "L3"})
     uwb = calibrated(TYPICAL_UWB, rng)
-    readings += _story(burnt) + _flight(uav, tracks, uwb, rng)
+    ranged = {node: radios[node] for node in tracks}
+    readings += _story(burnt) + flight_readings("uav-1", uav, ranged, uwb, rng)
     readings += list(pressure_readings("base", base, np.arange(0.0, DURATION_S, 5.0), rng, 0.0))
     for node in tracks:
         readings += _worn(node, radios, uwb, rng)
@@ -133,23 +134,6 @@ def _worn(node: str, radios: dict[str, Radio], uwb: Uwb, rng: np.random.Generato
     told += status_readings(node, radio.truth, epochs[::5], FIRE_M, breathing)
     sent = [reading for reading in told if not radio.silent_s[0] <= reading.t < radio.silent_s[1]]
     return sent + measured(node, radios, DURATION_S, rng, kit)
-
-
-def _flight(
-    uav: TrueTrack, tracks: dict[str, TrueTrack], uwb: Uwb, rng: np.random.Generator
-) -> list[AnyReading]:
-    """The UAV's GNSS fixes, and its ranges to those near windows on its side."""
-    t_s = np.arange(0.5, DURATION_S, 1.0)
-    sigma = (1.2, 1.2, 2.0)
-    fixes = uav.at(t_s) + rng.normal(0.0, 1.0, (len(t_s), 3)) * np.array(sigma)
-    readings: list[AnyReading] = [
-        Position(t=t, node="uav-1", position_m=(round(e, 2), round(n, 2), round(u, 2)), sigma_m=sigma)
-        for t, (e, n, u) in zip(t_s.tolist(), fixes.tolist(), strict=True)
-    ]
-    for node, truth in tracks.items():
-        ranges = window_ranges("uav-1", uav, node, truth, t_s, uwb, rng)
-        readings += [r for r in ranges if node != LOST or not LOST_S[0] <= r.t < LOST_S[1]]
-    return readings
 
 
 def _story(burnt: str) -> list[AnyReading]:

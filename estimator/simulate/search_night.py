@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.measurements import AnyReading, Node, Position
+from estimator.measurements import AnyReading, Node
 from estimator.simulate.base import FloatArray, Scenario, TrueTrack, in_posting_order, static_track
 from estimator.simulate.breadcrumbs import Dropped, drop_along
 from estimator.simulate.building import STOREYS, Room
@@ -27,7 +27,7 @@ from estimator.simulate.team import (
     radios_of,
     reported,
 )
-from estimator.simulate.uav import circle, window_ranges
+from estimator.simulate.uav import circle, flight_readings
 
 NAME = "search-night"
 DURATION_S = 900.0
@@ -36,7 +36,6 @@ CREWS_P, PEOPLE_P, VEHICLES_P = (0.3, 0.5, 0.2), (0.2, 0.4, 0.4), (0.4, 0.25, 0.
 UWB_P, ALTIMETERS_P, UAV_P = 0.75, 0.8, 0.5
 GATEWAY = "engine-7"
 VEHICLE_SIGMA_M = 0.2
-FIX_SIGMA_M = (1.2, 1.2, 2.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +110,11 @@ def readings_of(night: Night, radios: dict[str, Radio], rng: np.random.Generator
         altitude_sigma_m = 0.4 if crew_of(node) in night.altimeters else None
         kit = Kit(site=IN_THE_OFFICE, uwb=night.uwb, altitude_sigma_m=altitude_sigma_m)
         readings += measured(node, radios, DURATION_S, rng, kit)
-    return readings + _flight(night, radios, rng)
+    if night.uav is None:
+        return readings
+    ranged = {node: radios[node] for node in night.tracks}
+    readings.append(Node(t=0.0, node="uav-1", role="uav", callsign="UAV 1"))
+    return readings + flight_readings("uav-1", night.uav, ranged, night.uwb, rng)
 
 
 def crew_of(node: str) -> str:
@@ -171,23 +174,3 @@ def _introduce_vehicle(node: str, truth: TrueTrack, rng: np.random.Generator) ->
         position_m=(east, north, up),
         sigma_m=VEHICLE_SIGMA_M,
     )
-
-
-def _flight(night: Night, radios: dict[str, Radio], rng: np.random.Generator) -> list[AnyReading]:
-    """The UAV's fixes, and its ranges to those near windows on its side."""
-    if night.uav is None:
-        return []
-    t_s = np.arange(0.5, DURATION_S, 1.0)
-    fixes = night.uav.at(t_s) + rng.normal(0.0, 1.0, (len(t_s), 3)) * np.array(FIX_SIGMA_M)
-    readings: list[AnyReading] = [Node(t=0.0, node="uav-1", role="uav", callsign="UAV 1")]
-    readings += [
-        Position(t=t, node="uav-1", position_m=(round(e, 2), round(n, 2), round(u, 2)), sigma_m=FIX_SIGMA_M)
-        for t, (e, n, u) in zip(t_s.tolist(), fixes.tolist(), strict=True)
-    ]
-    if night.uwb is None:
-        return readings
-    for node, track in night.tracks.items():
-        ranges = window_ranges("uav-1", night.uav, node, track, t_s, night.uwb, rng)
-        silent_s = radios[node].silent_s
-        readings += [r for r in ranges if not silent_s[0] <= r.t < silent_s[1]]
-    return readings

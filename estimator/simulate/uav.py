@@ -1,16 +1,19 @@
-"""A UAV around the office: its circle, and its ranges through windows."""
+"""A UAV around the office: its circle, its fixes, and its ranges through windows."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from estimator.measurements import Range
+from estimator.measurements import AnyReading, Position, Range
 from estimator.simulate.base import FloatArray, TrueTrack
 from estimator.simulate.building import DEPTH_M, EAST_M, WEST_M, walls_between
+from estimator.simulate.links import Radio
 from estimator.simulate.radio import Uwb
 
 LAP_S = 150.0
 REACH_M = 45.0
+FIX_SIGMA_M = (1.2, 1.2, 2.0)
 
 
 def circle(end_s: float) -> TrueTrack:
@@ -56,3 +59,29 @@ def window_ranges(
         for t, range_m, ok in zip(t_s.tolist(), measured.tolist(), seen.tolist(), strict=True)
         if ok and not np.isnan(range_m)
     ]
+
+
+def flight_readings(
+    uav: str, flight: TrueTrack, radios: Mapping[str, Radio], uwb: Uwb | None, rng: np.random.Generator
+) -> list[AnyReading]:
+    """Its GNSS fixes each second, and its ranges to those near windows on its side.
+
+    Args:
+        uav: its name.
+        flight: its way.
+        radios: of those whom it ranges; silent ones do not answer.
+        uwb: the radios that they carry; None: they have none.
+        rng: where noise comes from.
+    """
+    t_s = np.arange(0.5, flight.t_s[-1], 1.0)
+    fixes = flight.at(t_s) + rng.normal(0.0, 1.0, (len(t_s), 3)) * np.array(FIX_SIGMA_M)
+    readings: list[AnyReading] = [
+        Position(t=t, node=uav, position_m=(round(e, 2), round(n, 2), round(u, 2)), sigma_m=FIX_SIGMA_M)
+        for t, (e, n, u) in zip(t_s.tolist(), fixes.tolist(), strict=True)
+    ]
+    if uwb is None:
+        return readings
+    for node, radio in radios.items():
+        ranges = window_ranges(uav, flight, node, radio.truth, t_s, uwb, rng)
+        readings += [r for r in ranges if not radio.silent_s[0] <= r.t < radio.silent_s[1]]
+    return readings

@@ -24,6 +24,7 @@ from estimator.smoothing.keyframes.displacement_sums import LENGTH
 from estimator.smoothing.keyframes.ends import UNIT
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.readings.sharing import sharing_counts
 from estimator.smoothing.readings.stacked import StackedReadings
 
 LEAST_DB2 = 0.25
@@ -111,10 +112,7 @@ def _shared(state: FusionState) -> NDArray[np.bool_]:
 
 
 def _alike(layout: Layout, slab: Integers, walk: Integers) -> Array:
-    """How many keyframes share each shadow, itself included, as its bearer walks on (decision 0033).
-
-    Each counts for as much as the others that share it: see `sharing.powers_sharing`.
-    """
+    """How many keyframes share each shadow, itself included, as its bearer walks on (decision 0033)."""
     found = np.ones(len(slab))
     for i in np.unique(walk).tolist():
         mine = np.flatnonzero(walk == i)
@@ -123,11 +121,7 @@ def _alike(layout: Layout, slab: Integers, walk: Integers) -> Array:
             continue
         gone_m = way.between(t[:-1], t[1:])[:, LENGTH]
         kept = np.exp(-gone_m / physics.SHARED_M - np.diff(t) / physics.SHARED_S)
-        before, after = np.ones(len(mine)), np.ones(len(mine))
-        for k in range(1, len(mine)):
-            before[k] = 1.0 + kept[k - 1] * before[k - 1]
-            after[-k - 1] = 1.0 + kept[-k] * after[-k]
-        found[mine] = before + after - 1.0
+        found[mine] = sharing_counts(kept)
     return found
 
 

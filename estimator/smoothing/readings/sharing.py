@@ -38,3 +38,21 @@ def powers_sharing(pairs: Array, alike: Array, drifts: NDArray[np.bool_]) -> Arr
         from_now[k], next_alike[k] = 1.0 + kept * from_now[k], alike[i]
         found[i] = alike[i] + from_now[k] - 1.0
     return found
+
+
+@njit(cache=True)
+def sharing_counts(kept: Array) -> Array:
+    """How many of n in a row share the error of each, itself included, by what each keeps of the one before.
+
+    Each is to count for as much as these: see `powers_sharing`.
+
+    Args:
+        kept: what each keeps of the error of the one before, but for the first, n − 1.
+    """
+    n = len(kept) + 1
+    before, after = np.ones(n), np.ones(n)
+    for k in range(1, n):
+        before[k] = 1.0 + kept[k - 1] * before[k - 1]
+        after[n - 1 - k] = 1.0 + kept[n - 1 - k] * after[n - k]
+    found: Array = before + after - 1.0
+    return found

@@ -65,3 +65,10 @@ def test_who_has_a_unit_is_weighed_as_his_ranges_are() -> None:
 
 def test_nothing_is_shared_where_nothing_was_read() -> None:
     assert len(powers_sharing(np.zeros((0, len(COLUMNS["pairs"]))), np.zeros(0))) == 0
+
+
+def test_errors_in_a_row_are_shared_by_as_many_as_what_is_kept_between_them_adds_up_to() -> None:
+    kept = np.random.default_rng(4).uniform(0.0, 1.0, 9)
+    at = np.concatenate([[0.0], np.cumsum(-np.log(kept))])
+    shared = np.exp(-np.abs(at[:, None] - at)).sum(axis=1)
+    assert sharing.sharing_counts(kept) == pytest.approx(shared)
