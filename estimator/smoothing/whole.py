@@ -115,8 +115,11 @@ def _solved(state: FusionState) -> tuple[Problem, Solution]:
     problem = _problem(state)
     problem, solved = _with_moved_nodes(problem, problem.solve(solved.x), RESTING)
     # Last, for a node that was moved makes ranges differ like a wall.
-    problem.rows.obstruct(solved.x)
-    return problem, problem.solve(solved.x) if problem.rows.shift.any() else solved
+    rows, _ = problem.rows.obstructed(solved.x, np.ones(len(problem.rows.t), dtype=np.bool_))
+    if not rows.shift.any():
+        return problem, solved
+    problem = problem.with_rows(rows)
+    return problem, problem.solve(solved.x)
 
 
 def _initial_solution(state: FusionState) -> tuple[Problem, Solution]:

@@ -6,6 +6,7 @@ Of several hypotheses, and of the images of ways, the likeliest solution counts.
 from collections.abc import Sequence
 from functools import partial
 
+import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
@@ -22,6 +23,7 @@ from estimator.smoothing.problem.gauge_turn import turned
 from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
+from estimator.smoothing.readings.sharing import LINK
 from estimator.smoothing.units.turned_frames import may_have_turned, turned_frames
 from estimator.smoothing.units.unit_mounting import likeliest_mounting
 from estimator.smoothing.units.unseen_climbs import find_unseen_climb, hinted
@@ -33,6 +35,8 @@ GONE = 8.0
 ITERATIONS = 8
 """Most windows rest after two or three steps. Among walls little holds a map: left after four, one was 17 m
 off where it would have rested 9 m off."""
+GOOD = 0.5
+"""Readings are outliers that are less likely to have the good noise."""
 RESTING = 0.1
 """A window that gains less in log likelihood is solved again soon anyway."""
 
@@ -56,14 +60,15 @@ def refresh(state: FusionState, solved_t: float, bent: bool = False, effort: Eff
     try:
         judged, mountings = _likeliest(state, since, solved_t, bent, effort)
         state.exposed = judged.exposed
-        trimmed = trim(judged.problem, judged.solved)
-        _hand_back(state, judged, mountings)
+        clear = _past_walls(state, judged)
+        trimmed = trim(clear.problem, clear.solved)
+        _hand_back(state, clear, mountings)
         causes = tell_findings(state, judged, solved_t)
     except ValueError as error:
         text = f"the last minutes could not be solved again, positions go on without: {error}"
         state.say("unsolved", state.newest_t, None, text)
         return False
-    _remember(state, judged, trimmed)
+    _remember(state, clear, trimmed)
     # Where one is likely to be wrong, look again soon which one.
     state.suspected = state.suspected or causes.wrong or may_have_turned(state)
     causes.correct(state)
@@ -127,6 +132,21 @@ def _solved(problem: Problem, x: Array, solved_t: float, bent: bool) -> Solution
         straight = problem.solve(solved.x, METRES_OFF, len(METRES_OFF) + ITERATIONS, RESTING)
         solved = min(solved, straight, key=lambda found: found.cost)
     return solved
+
+
+def _past_walls(state: FusionState, judged: JudgedImages) -> JudgedImages:
+    """The solution with what walls add to ranges taken off; the filter takes it off each link's next ones.
+
+    All else is asked of the window without that, and its outliers are left what they are: the first ranges to
+    a breadcrumb that was kicked scatter as well, and taken for a wall's they would lead who passes astray.
+    """
+    solved = judged.solved
+    rows, walls = judged.problem.rows.obstructed(solved.x, solved.weighted.good > GOOD)
+    state.links.tell_walls(rows.pairs[:, LINK].astype(np.intp), *walls)
+    if not rows.shift.any():
+        return judged
+    problem = judged.problem.with_rows(rows)
+    return judged._replace(problem=problem, solved=problem.solve(solved.x, (), ITERATIONS, RESTING))
 
 
 def _hand_back(state: FusionState, judged: JudgedImages, mountings: Sequence[Mode]) -> None:

@@ -120,7 +120,9 @@ def single_sigma(white: float, common: float, alike: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def link_sigma(factor: float, shared: float, nominal: float, alike: float) -> float:
+def link_sigma(
+    factor: float, shared: float, nominal: float, alike: float, scatter: float, doubt: float
+) -> float:
     """The same by what has been learned of a technology.
 
     Args:
@@ -128,10 +130,12 @@ def link_sigma(factor: float, shared: float, nominal: float, alike: float) -> fl
         shared: share of the variance that is common.
         nominal: claimed or assumed standard deviation.
         alike: k, which number in its row of alike readings this one is.
+        scatter: variance that walls add to each reading.
+        doubt: variance that they add to all of the link.
     """
     total = (nominal * factor) ** 2
     common = shared * total
-    return single_sigma(total - common, common, alike)
+    return single_sigma(total - common + scatter, common + doubt, alike)
 
 
 @njit(cache=True, error_model="numpy")

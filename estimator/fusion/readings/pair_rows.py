@@ -141,6 +141,7 @@ def fill(
 ) -> None:
     """Fill the row of a reading between two decided nodes, see `rows.Row`."""
     sigma, source, link, extra = pair[SIGMA], technology[SOURCE], pair[LINK], technology[START]
+    walls_m = scatter_m2 = doubt_m2 = 0.0
     at_a, at_b = recent_places.offset(a, marks, x, pair[T]), recent_places.offset(b, marks, x, pair[T])
     if kind_of(technology) == BEARING:
         source = link = -1.0
@@ -150,10 +151,14 @@ def fill(
         known = technology[FACTOR], technology[SHARED], pair[SIGMA]
         through = abs(up_m(a, x) + at_a[2] - up_m(b, x) - at_b[2]) > physics.FLOOR_M
         through = through and a[recent_places.OUTSIDE] == 0.0 and b[recent_places.OUTSIDE] == 0.0
+        if link >= 0 and not through:
+            on = newest[int(link)]
+            walls_m, scatter_m2 = on[link_correlation.WALLS_M], on[link_correlation.SCATTER_M2]
+            doubt_m2 = on[link_correlation.DOUBT_M2]
         if technology[KIND] == RSSI and link >= 0 and (drifts(a) or drifts(b)) and not through:
             sigma = link_correlation.power_sigma(newest[int(link)], *known)
         else:
-            sigma = link_sigma(*known, alike)
+            sigma = link_sigma(*known, alike, scatter_m2, doubt_m2)
         if through:
             # It tells nothing of what its technology is like where no floor is between.
             sigma = through_sigma(sigma, technology[KIND] == RSSI, alike)
@@ -168,7 +173,7 @@ def fill(
     kind, ahead = kind_of(technology), 0.0
     if technology[START] >= 0 and kind != BEARING:
         ahead = ahead_between(kind, a, b, at_a, at_b, x)
-    row[rows.KIND], row[rows.VALUE], row[rows.CONSTANT] = kind, pair[VALUE], pair[CONSTANT]
+    row[rows.KIND], row[rows.VALUE], row[rows.CONSTANT] = kind, pair[VALUE] - walls_m, pair[CONSTANT]
     row[rows.AHEAD] = ahead
     row[rows.A], row[rows.B], row[rows.EXTRA] = a[recent_places.START], b[recent_places.START], extra
     row[rows.SIGMA], row[rows.NOMINAL] = sigma, pair[SIGMA]

@@ -5,7 +5,6 @@ another one.
 """
 
 from collections.abc import Sequence
-from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -63,8 +62,7 @@ def moved_nodes(
     """
     state, whole = problem.layout.state, problem
     chosen, rows = problem.rows.rarer()
-    problem = copy(problem)
-    problem.rows = rows
+    problem = problem.with_rows(rows)
     m = len(rows.pairs)
     kinds = rows.pairs[:, 1]
     now = float(problem.layout.grid[-1])

@@ -65,6 +65,12 @@ class Objective:
         vars(other)["coupled"] = self.coupled
         return other
 
+    def with_rows(self, rows: Rows) -> Self:
+        """The same problem with its rows told otherwise how noisy they are, or what they are too long by."""
+        other = copy(self)
+        other.rows = rows
+        return other
+
     def part(self, numbers: Unknowns, x: Array, chosen: NDArray[np.bool_], left: HeldQuadratic) -> Self:
         """Some walks by themselves up to some keyframe, with all others held where they are.
 

@@ -32,7 +32,7 @@ from estimator.smoothing.readings.linearisation import (
     scale_sigmas,
     separations,
 )
-from estimator.smoothing.readings.obstructed import excess
+from estimator.smoothing.readings.obstructed import Excess, excess
 from estimator.smoothing.readings.partial import partial
 from estimator.smoothing.readings.shadows import Shadows, shadows_of, take_shadows, with_shadows
 from estimator.smoothing.readings.sharing import powers_sharing
@@ -166,29 +166,34 @@ class Rows:
         self._usual_noise = self.noise.copy()
         echoes.tell(self.noise, self.pairs[:, ECHO], self.alike)
         self._white, self._common = white, common
-        self._tell(white, common)
+        self.tell(white, common)
 
-    def obstruct(self, x: Array) -> None:
-        """Tell by how ranges scatter on their links what they are too long by: see `obstructed`.
+    def obstructed(self, x: Array, asked: NDArray[np.bool_]) -> tuple[Self, Excess]:
+        """The same rows, less what ranges are too long by as their scatter tells; and what that is, of pairs.
 
         Args:
-            x: an estimate, flat, in which no node that was moved is thought to be where it was.
+            x: an estimate, flat.
+            asked: which rows may tell, m: a node that was moved makes ranges scatter as well.
         """
-        m = len(self.pairs)
-        self.shift = np.zeros(len(self.nominal))
+        other, m = copy(self), len(self.pairs)
         off = self._read(x)
-        among = self._inside & (self.pairs[:, 1] == RANGE) & ~self.through(x)
+        among = self._inside & (self.pairs[:, 1] == RANGE) & ~self.through(x) & asked[:m]
         steep_m = np.abs(separations(self._readings, x)[:, 2])
-        white, common = self._white.copy(), self._common.copy()
+        walls = Excess(*np.zeros((3, m)))
         for source in np.unique(self.source[:m][among]):
             at = np.flatnonzero(among & (self.source[:m] == source))
             found = excess(self.pairs[at, 9].astype(np.int64), self.alike[at], off[at], steep_m[at])
-            self.shift[at] = found.mean_m
-            white[at] += found.scatter_m2
-            common[at] += found.doubt_m2
-        self._tell(white, common)
+            for number, told in zip(walls, found, strict=True):
+                number[at] = told
+        other.shift = np.append(walls.mean_m, np.zeros(len(self.nominal) - m))
+        white, common = self._white.copy(), self._common.copy()
+        white[:m] += walls.scatter_m2
+        common[:m] += walls.doubt_m2
+        other.tell(white, common)
+        return other, walls
 
-    def _tell(self, white: Array, common: Array) -> None:
+    def tell(self, white: Array, common: Array) -> None:
+        """Give each reading its sigma, by the variances that it has for itself and shares on its link, m."""
         self.told = np.append(sigmas(white, common, self._rows), self._shadow_db)
         self._alone = np.append(np.sqrt(white + common), self._shadow_db)
         self.sigma = self.told.copy()

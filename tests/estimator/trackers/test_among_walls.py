@@ -1,10 +1,7 @@
 """A crew upstairs in an office, whom vehicles in the street hear far too weakly (decision 0123)."""
 
-from collections.abc import Mapping, Sequence
-
 import numpy as np
 
-from estimator.estimate import TrackPoint
 from estimator.measurements import AnyReading
 from estimator.measurements.node import Node
 from estimator.simulate.base import TrueTrack, static_track
@@ -23,8 +20,7 @@ from estimator.simulate.team import (
 )
 from estimator.trackers import smoother
 from estimator.trackers.base import TrackerSettings
-from estimator.trackers.kirchhoff import KirchhoffTracker
-from tests.estimator.ellipses import SURE, outside
+from tests.estimator.trackers.shown import followed, surely_elsewhere
 
 SECONDS = 360
 VEHICLES_M = {"engine": (12.0, -DEPTH_M - 8.0, 2.0), "ladder": (34.0, -DEPTH_M - 8.0, 2.0)}
@@ -59,39 +55,12 @@ def _search(number: int, rng: np.random.Generator) -> TrueTrack:
     return way.track(SECONDS)
 
 
-def surely_elsewhere(points: Mapping[str, Sequence[TrackPoint]], tracks: Mapping[str, TrueTrack]) -> int:
-    """For how many seconds, of all people, somebody is shown elsewhere, and sure of it."""
-    found = 0
-    for name, track in tracks.items():
-        for point in points[name]:
-            at_m = track.at(np.array([point.t]))[0]
-            found += outside(point.position_m, point.covariance_m2, at_m) > SURE
-    return found
-
-
-def followed(readings: Sequence[AnyReading], names: Sequence[str]) -> dict[str, list[TrackPoint]]:
-    """What is shown of each, second by second."""
-    tracker = KirchhoffTracker()
-    points: dict[str, list[TrackPoint]] = {name: [] for name in names}
-    coming = list(readings)
-    for second in range(1, SECONDS + 1):
-        now = [reading for reading in coming if reading.until_t <= second]
-        coming = coming[len(now) :]
-        tracker.fold(now)
-        for e in tracker.estimates():
-            if e.node in points and e.position_m is not None and e.covariance_m2 is not None:
-                points[e.node].append(
-                    TrackPoint(t=e.t, position_m=e.position_m, covariance_m2=e.covariance_m2)
-                )
-    return points
-
-
 def test_who_is_heard_too_weakly_by_vehicles_in_the_street_is_not_shown_elsewhere_as_sure() -> None:
     """Of 5,760 seconds. With what walls take counted link by link, three of these nights have 453 and 955."""
     live = back = 0
     for seed in SEEDS:
         readings, tracks = night(seed)
-        live += surely_elsewhere(followed(readings, list(tracks)), tracks)
+        live += surely_elsewhere(followed(readings, list(tracks), SECONDS), tracks)
         back += surely_elsewhere(smoother("kirchhoff", TrackerSettings()).smooth(readings), tracks)
     assert live < 80
     assert back == 0

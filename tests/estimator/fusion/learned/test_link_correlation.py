@@ -8,7 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from estimator.fusion import physics
-from estimator.fusion.learned.link_correlation import ALIKE, ERROR, KEPT, NEW, Links, follow, power_sigma
+from estimator.fusion.learned.link_correlation import (
+    ALIKE,
+    ERROR,
+    KEPT,
+    NEW,
+    WALLS_M,
+    Links,
+    follow,
+    power_sigma,
+)
 from estimator.graph.dense import Array
 
 FACTOR, SHARED, NOMINAL_DB = 1.2, 0.4, 5.0
@@ -58,6 +67,20 @@ def test_a_link_forgets_its_error_once_an_end_has_walked_a_room_on() -> None:
     assert link[ALIKE] == pytest.approx(10.0, rel=0.1)
     follow(link, 10.0, 30.0)
     assert link[ALIKE] == pytest.approx(1.0, abs=0.01)
+
+
+def test_what_walls_add_on_a_link_is_that_of_its_newest_range_and_goes_as_an_end_walks_on() -> None:
+    links = Links()
+    for name in ("b1", "b2"):
+        links.number("uwb", "ff", name)
+    links.tell_walls(np.array([0, -1, 0]), np.array([9.0, 8.0, 0.5]), np.full(3, 0.25), np.full(3, 0.04))
+    assert links.table[:, WALLS_M].tolist() == [0.5, 0.0]
+    follow(links.table[0], 0.0, 0.0)
+    links.tell_walls(np.array([0]), np.array([0.5]), np.array([0.25]), np.array([0.04]))
+    follow(links.table[0], 0.0, physics.SHARED_M)
+    assert links.table[0, WALLS_M:] == pytest.approx(np.array([0.5, 0.25, 0.04]) / math.e)
+    links.renew("b1")
+    assert not links.table[0, WALLS_M:].any()
 
 
 def test_the_first_reading_on_a_link_shares_its_error_with_none() -> None:

@@ -52,13 +52,19 @@ def test_noise_is_learned_from_some_hundred_readings_and_of_powers_from_a_minute
 
 def test_alike_readings_are_together_worth_no_more_than_their_common_error_allows() -> None:
     noise = LearnedNoise(count=100.0, squares=100.0, pairs=100.0, products=50.0)
-    worth = sum(link_sigma(noise.factor, noise.shared, 1.0, float(k)) ** -2 for k in range(1, 200))
+    worth = sum(link_sigma(noise.factor, noise.shared, 1.0, float(k), 0.0, 0.0) ** -2 for k in range(1, 200))
     assert worth == pytest.approx(199.0 / (0.5 + 199.0 * 0.5), rel=1e-6)
+
+
+def test_ranges_behind_a_wall_are_together_worth_no_more_than_it_is_known() -> None:
+    worth = sum(link_sigma(1.0, 0.0, 0.1, float(k), 0.25, 0.04) ** -2 for k in range(1, 2000))
+    assert worth == pytest.approx(1.0 / 0.04, rel=0.01)
+    assert worth < 1.0 / 0.04
 
 
 def test_independent_readings_keep_their_full_worth() -> None:
     noise = LearnedNoise(count=100.0, squares=100.0, pairs=100.0, products=0.0)
-    assert link_sigma(noise.factor, noise.shared, 0.3, 50.0) == pytest.approx(0.3)
+    assert link_sigma(noise.factor, noise.shared, 0.3, 50.0, 0.0, 0.0) == pytest.approx(0.3)
 
 
 def test_however_often_one_listens_through_a_floor_it_tells_no_more_than_the_floor_lets() -> None:

@@ -90,9 +90,36 @@ def test_rows_of_one_kind_come_together_and_the_ledger_keeps_the_order_of_epochs
     assert table[:, rows.VALUE].tolist() == [4.0, 4.5, -60.0, 0.2, 0.4]
     assert table[:, rows.NOMINAL].tolist() == [0.2, 0.3, physics.RSSI_SIGMA_DB, 0.2, 0.2]
     factor, shared = state.learned("uwb").factor, state.learned("uwb").shared
-    expected = [link_sigma(factor, shared, 0.2, 1.0), link_sigma(factor, shared, 0.3, 2.0)]
+    expected = [
+        link_sigma(factor, shared, 0.2, 1.0, 0.0, 0.0),
+        link_sigma(factor, shared, 0.3, 2.0, 0.0, 0.0),
+    ]
     assert table[:2, rows.SIGMA] == pytest.approx(expected)
     assert table[3:, rows.EXTRA].tolist() == [state.graph.starts[state.nodes["ff"].unit], -1.0]
+
+
+def test_what_walls_add_is_taken_off_a_range_which_counts_for_less_but_not_through_a_floor() -> None:
+    state = crew()
+    first, above = held(
+        state,
+        Range(t=T, a="ff", b="crumb", range_m=6.0, technology="uwb", sigma_m=0.2),
+        Range(t=T, a="ff", b="up", range_m=6.0, technology="uwb", sigma_m=0.2),
+    )
+    state.links.tell_walls(np.arange(2), np.full(2, 0.5), np.full(2, 0.25), np.full(2, 0.09))
+    second, above_again = held(
+        state,
+        Range(t=T, a="ff", b="crumb", range_m=6.0, technology="uwb", sigma_m=0.2),
+        Range(t=T, a="ff", b="up", range_m=6.1, technology="uwb", sigma_m=0.2),
+    )
+    known = state.learned("uwb")
+    alone, walled = (
+        link_sigma(known.factor, known.shared, 0.2, 2.0, *more) for more in ((0.0, 0.0), (0.25, 0.09))
+    )
+    assert (first[rows.VALUE], second[rows.VALUE]) == (6.0, 5.5)
+    assert walled > alone
+    assert second[rows.SIGMA] == pytest.approx(walled)
+    assert (above[rows.VALUE], above_again[rows.VALUE]) == (6.0, 6.1)
+    assert column(state, "value") == [6.0, 6.0, 6.0, 6.1]
 
 
 def test_a_floor_between_adds_noise_and_tells_nothing_of_the_technology() -> None:
