@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
+from numpy.typing import NDArray
 
 from estimator.fusion.entering.introduce import turn_sigma
 from estimator.fusion.entering.unit_mounting import RIGHT, Mounting, mount, mounting_of
@@ -61,6 +62,7 @@ def hypotheses(
             bent the good ones to a wrong one.
     """
     plain = unlearned(state)
+    floors: NDArray[np.bool_] | None = None
     wrong = [number for number in numbers if mounting_of(state.life(number)) != RIGHT]
     tried: list[dict[int, Mounting]] = [{}, *({number: RIGHT} for number in wrong)]
     for number in numbers:
@@ -75,6 +77,9 @@ def hypotheses(
         for number, way in each.items():
             mount(other, number, way)
         trial = build(other)
+        # How a unit is worn says nothing of heights: whichever way it is, it costs by the same floors.
+        floors = trial.rows.through(x) if floors is None else floors
+        trial.rows.floors = floors
         odds = _odds(other, numbers)
         most = math.inf if not found else found[0].cost + odds
         turned = next((number for number, way in each.items() if way == TURNED), None)
@@ -102,6 +107,7 @@ def hypotheses(
     if best is not None and best is not found[0]:
         # What was found along with it, as it is: that others lie better elsewhere speaks against no unit.
         trial = build(plain)
+        trial.rows.floors = floors
         again = _led(trial, _reckoned(trial, best.x, dict(best.worn)), math.inf, resting)
         odds = _odds(plain, numbers)
         if again is not None and again.cost - odds < found[0].cost:

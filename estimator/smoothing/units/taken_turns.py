@@ -45,6 +45,8 @@ def take_turn(
     t = float(layout.times[turn.keyframe, turn.of])
     _let_turn(other, walk.number, t, turn.across2)
     as_it_is, turned = build(plain), build(other)
+    # A turn says nothing of heights: both cost by the same floors.
+    as_it_is.rows.floors = turned.rows.floors = as_it_is.rows.through(solved.x)
     try:
         known = as_it_is.solve(solved.x, iterations=ITERATIONS, resting=resting)
         found = turned.solve(_start(as_it_is, known.x, turn), SLACKS_M, resting=resting)

@@ -14,6 +14,7 @@ from estimator.measurements.drop import Drop
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
+from estimator.simulate import scenario
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import SURE, outside
@@ -148,6 +149,17 @@ def test_units_worn_the_right_way_are_believed(seed: int) -> None:
     wrong, said = followed(*entry(RIGHT, seed))
     assert sum(wrong.values()) == 0
     assert said == []
+
+
+def test_no_unit_is_blamed_for_what_solutions_take_for_floors() -> None:
+    """One of two on a stair: whether powers go through a floor, each solution told by where it had begun."""
+    tracker, coming = KirchhoffTracker(), scenario("search-night", 2010).reports
+    said = list[str]()
+    for second in range(1, 131):
+        tracker.fold([report.reading for report in coming if second - 1 < report.sent_s <= second])
+        tracker.estimates()
+        said += [notice.text for notice in tracker.take_notices()]
+    assert [text for text in said if "worn" in text] == []
 
 
 def test_of_two_units_that_mirror_each_other_nobody_knows_which_is_wrong_and_none_is_sure() -> None:
