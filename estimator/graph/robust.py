@@ -16,6 +16,8 @@ MOST = 1e300
 """What a reading costs at most, in log likelihood: of two infinite costs none would be the lower one."""
 NEGLIGIBLE = 700.0
 """Of a sum of likelihoods what is less likely by so much, in log likelihood, is nothing."""
+GOOD = 0.5
+"""A reading that is less likely to have the good noise is an outlier."""
 WILD, FARTHER = 0.1, 10.0
 """How many of the bad readings are wild: so many times as far off as the others. An echo off a steel door, a
 glitch: one range of 60 m must not take somebody there of whom nothing was heard for twenty seconds."""

@@ -13,6 +13,7 @@ from estimator.fusion import physics
 from estimator.fusion.memory.prior import Prior
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
+from estimator.graph.robust import GOOD
 from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
 from estimator.smoothing.images.alternatives import Mode, alternatives_now
 from estimator.smoothing.images.flip_ambiguity import LIVE, Effort
@@ -35,8 +36,6 @@ GONE = 8.0
 ITERATIONS = 8
 """Most windows rest after two or three steps. Among walls little holds a map: left after four, one was 17 m
 off where it would have rested 9 m off."""
-GOOD = 0.5
-"""Readings are outliers that are less likely to have the good noise."""
 RESTING = 0.1
 """A window that gains less in log likelihood is solved again soon anyway."""
 
@@ -142,8 +141,11 @@ def _past_walls(state: FusionState, judged: JudgedImages) -> JudgedImages:
     """
     solved = judged.solved
     rows, walls = judged.problem.rows.obstructed(solved.x, solved.weighted.good > GOOD)
-    state.links.tell_walls(rows.pairs[:, LINK].astype(np.intp), *walls)
-    if not rows.shift.any():
+    # No more than may always be between two radios is no wall.
+    is_clear = walls.mean_m.max(initial=0.0) < physics.WALL_M
+    told = [np.zeros_like(one) if is_clear else one for one in walls]
+    state.links.tell_walls(rows.pairs[:, LINK].astype(np.intp), *told)
+    if is_clear:
         return judged
     problem = judged.problem.with_rows(rows)
     return judged._replace(problem=problem, solved=problem.solve(solved.x, (), ITERATIONS, RESTING))

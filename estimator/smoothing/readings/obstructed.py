@@ -69,7 +69,7 @@ def excess(link: Integers, alike: Array, residual: Array, steep_m: Array) -> Exc
     return Excess(mean, squared, squared - mean**2 + (physics.EXCESS_UNSURE * mean) ** 2)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _odds(link: Integers, alike: Array, residual: Array, floor: Array, rungs: Array, counts: Array) -> Array:
     """Probability of each excess for each reading, m × rungs: the likelier of what two beginnings lead to."""
     before, kept, off = _differences(link, alike, residual)
@@ -88,7 +88,7 @@ def _odds(link: Integers, alike: Array, residual: Array, floor: Array, rungs: Ar
     return odds
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _expectation_maximisation(
     before: Integers,
     kept: Array,
@@ -105,23 +105,30 @@ def _expectation_maximisation(
     """
     m, n = len(before), len(rungs)
     odds, share = np.zeros((m, n)), counts / counts.sum()
-    told, onward, back = np.zeros((m, n)), np.zeros((m, n)), np.zeros((m, n))
+    told, onward, back, level = np.zeros((m, n)), np.zeros((m, n)), np.zeros((m, n)), np.empty(n)
     for _ in range(ROUNDS):
+        shapes = _shapes(sigma, rungs)
+        for r in range(n):
+            # What scatters less than the radio itself is not seen.
+            level[r] = math.log(_usual(share, 0.0, r)) if r == 0 or rungs[r] >= sigma else -math.inf
         for k in felt:
             for r in range(n):
-                told[k, r] = EACH * _log_density(off[k], sigma, rungs[r])
+                if level[r] > -math.inf:
+                    told[k, r] = EACH * math.log(_density(off[k], shapes[r]))
         _sum_along_links(before, kept, told, onward, back)
         for i in range(m):
             most = -math.inf
             for r in range(n):
-                # What scatters less than the radio itself is not seen.
-                seen = r == 0 or rungs[r] >= sigma
-                usual = _usual(share, floor[i], r)
-                odds[i, r] = onward[i, r] + back[i, r] + math.log(usual) if seen else -math.inf
+                steep = floor[i] > 0.0 and level[r] > -math.inf
+                usual = math.log(_usual(share, floor[i], r)) if steep else level[r]
+                odds[i, r] = onward[i, r] + back[i, r] + usual
                 most = max(most, odds[i, r])
+            total = 0.0
             for r in range(n):
-                odds[i, r] = math.exp(odds[i, r] - most)
-            odds[i] /= odds[i].sum()
+                odds[i, r] = 1.0 if odds[i, r] == most else math.exp(odds[i, r] - most)
+                total += odds[i, r]
+            for r in range(n):
+                odds[i, r] /= total
         common, squares, clear = counts.copy(), COUNTED * sigma**2, COUNTED
         for k in felt:
             for r in range(n):
@@ -133,11 +140,11 @@ def _expectation_maximisation(
         was, sigma = sigma, max(math.sqrt(squares / clear), physics.SIGMA_FLOOR_M)
         if abs(sigma - was) < SETTLED * was and np.abs(share - known).max() < SETTLED:
             break
-    likely = float((counts * np.log(share)).sum())
+    likely, shapes = float((counts * np.log(share)).sum()), _shapes(sigma, rungs)
     for k in felt:
         density = 0.0
         for r in range(n):
-            density += _usual(share, floor[k], r) * math.exp(_log_density(off[k], sigma, rungs[r]))
+            density += _usual(share, floor[k], r) * _density(off[k], shapes[r])
         likely += EACH * math.log(density)
     return odds, likely
 
@@ -148,7 +155,7 @@ def _usual(share: Array, floor: float, rung: int) -> float:
     return float(max((1.0 - floor) * share[rung] + (floor if rung == FLOOR else 0.0), 1e-9))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _sum_along_links(before: Integers, kept: Array, told: Array, onward: Array, back: Array) -> None:
     """Sum log odds along each link, forward and backward; they fade as the link's error does."""
     onward[:], back[:] = told, 0.0
@@ -182,10 +189,23 @@ def _differences(link: Integers, alike: Array, residual: Array) -> tuple[Integer
 
 
 @njit(cache=True)
-def _log_density(off: float, sigma: float, rung: float) -> float:
-    """Of a difference between readings whose excess has a standard deviation, up to a constant."""
-    usual = sigma * sigma + rung * rung
-    odd = usual + GLITCH_M * GLITCH_M
-    density = (1.0 - GLITCHES * GLITCH) * math.exp(-0.5 * off * off / usual) / math.sqrt(usual)
-    density += GLITCHES * GLITCH * math.exp(-0.5 * off * off / odd) / math.sqrt(odd)
-    return math.log(max(density, 1e-300))
+def _shapes(sigma: float, rungs: Array) -> Array:
+    """Of differences between readings with each excess: height and half the precision, twice, rungs × 4.
+
+    An excess scatters by as much; now and then a reading is odd by itself.
+    """
+    found = np.empty((len(rungs), 4))
+    for r in range(len(rungs)):
+        usual = sigma * sigma + rungs[r] * rungs[r]
+        odd = usual + GLITCH_M * GLITCH_M
+        found[r, 0], found[r, 1] = (1.0 - GLITCHES * GLITCH) / math.sqrt(usual), 0.5 / usual
+        found[r, 2], found[r, 3] = GLITCHES * GLITCH / math.sqrt(odd), 0.5 / odd
+    return found
+
+
+@njit(cache=True, forceinline=True)
+def _density(off: float, shape: Array) -> float:
+    """Of a difference, up to a factor; never nil."""
+    squared = off * off
+    density = shape[0] * math.exp(-shape[1] * squared) + shape[2] * math.exp(-shape[3] * squared)
+    return float(max(density, 1e-300))

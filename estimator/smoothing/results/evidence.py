@@ -19,6 +19,7 @@ from estimator.fusion.learned.reach import in_metres
 from estimator.fusion.memory.ledger import BEARING, BODY_BEARING, RANGE, RSSI
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
+from estimator.graph.robust import GOOD
 from estimator.smoothing.images.alternatives import Mode, alternatives_now
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.priors import own_priors
@@ -104,7 +105,7 @@ def explain(
     listed += _known(problem, solved, across, total)
     held = sorted(_joined(listed), key=lambda m: -m.share)[:HELD_MAX]
     held = [m for m in held if m.share > 1e-4]
-    bad = np.flatnonzero(((solved.weighted.good < 0.5) & (rows.t > epoch - RECENT_S))[: len(power)])
+    bad = np.flatnonzero(((solved.weighted.good < GOOD) & (rows.t > epoch - RECENT_S))[: len(power)])
     near = [
         _row(state, rows, solved, flat, i, float(power[i])) for i in bad[np.argsort(-rows.t[bad])].tolist()
     ]
