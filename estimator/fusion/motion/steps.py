@@ -22,6 +22,8 @@ TRAIL_S = 4.0
 STRIDE_S = 1.0
 """Over so long at least a velocity is meant: a boot stands for half of each stride."""
 FIRST_DURATION_S = 1.0
+IMPOSSIBLE = 10.0
+"""So many times as far as anybody gets is no way at all: a unit at fault, or told in millimetres."""
 WHOLE_OFF_S = 0.02
 """Displacements whose epochs are apart by no more follow each other."""
 WALK_M2_PER_M, STAND_M2_PER_S = physics.WALK_M_PER_ROOT_M**2, physics.STAND_M_PER_ROOT_S**2
@@ -112,10 +114,16 @@ class Step:
             self._whole_t = start
         if t - self._whole_t > STRIDE_S - WHOLE_OFF_S:
             self._missed_s = 0.0
-        too_fast = length > physics.FASTEST_MPS * max(own, physics.TICK_S)
-        if too_fast:
+        farthest_m = physics.FASTEST_MPS * max(own, physics.TICK_S)
+        too_fast = length > farthest_m
+        if length > IMPOSSIBLE * farthest_m:
+            # It tells nothing: he may have gone anywhere meanwhile.
+            e = n = u = length = 0.0
+            anywhere_m2 = (physics.FASTEST_MPS * min(max(own, physics.TICK_S), LONGEST_S)) ** 2
+            across, up = across + anywhere_m2, up + anywhere_m2
+        elif too_fast:
             across, up = across + length**2, up + length**2
-        still = own > 0.0 and length < physics.STILL_MPS * own and start <= pose_t
+        still = own > 0.0 and not too_fast and length < physics.STILL_MPS * own and start <= pose_t
         sets_off = self._biases.stand(reading, still)
         if type(reading) is InertialDisplacement:
             up += reading.up_m2 + (physics.STRAPDOWN_SCALE_SIGMA * u) ** 2

@@ -127,8 +127,11 @@ def _extend(state: FusionState, step: Step, reading: Displacement, biases: list[
         _count(state, reading, "not_fused")
         return False
     if increment.too_fast:
-        length = math.hypot(*increment.delta_m)
-        text = f"{node.node} reported {length:.1f} m at once, faster than anyone runs"
+        text = f"{node.node} reported {math.hypot(*reading.delta_m):.1f} m at once, faster than anyone runs"
+        if not any(increment.delta_m):
+            text += (
+                ": that tells nothing of where the bearer is; look at the unit, and at what its gateway tells"
+            )
         state.say("outlier", reading.t, node.node, text)
         state.count("outlier")
     if step.straight.unsurer != straight.unsurer:
