@@ -22,6 +22,8 @@ TRAIL_S = 4.0
 STRIDE_S = 1.0
 """Over so long at least a velocity is meant: a boot stands for half of each stride."""
 FIRST_DURATION_S = 1.0
+AGAIN_S = 1.5
+"""What a displacement tells again of an earlier one is no longer, or nobody knows how much of it is new."""
 IMPOSSIBLE = 10.0
 """So many times as far as anybody gets is no way at all: a unit at fault, or told in millimetres."""
 WHOLE_OFF_S = 0.02
@@ -87,10 +89,10 @@ class Step:
         return self._biases.straight
 
     def take(self, reading: Displacement) -> Increment | None:
-        """Hold a displacement against what its unit reported before; None where that covers its epoch."""
+        """Hold a displacement against what its unit reported before; None where that covers it."""
         t, pose_t, unit_t = reading.t, self._pose_t, self._unit_t
         raw = type(reading) is InertialDisplacement
-        if t < pose_t or (unit_t is not None and t <= unit_t):
+        if t < pose_t or (unit_t is not None and t <= unit_t) or self.tells_again(reading):
             return None
         start = start_of(reading, pose_t if unit_t is None else unit_t)
         e, n, u = reading.delta_m
@@ -153,6 +155,11 @@ class Step:
         self.duration_s += duration
         self.noise = sum_of(self.noise, self._as_learned(noise, reading))
         return Increment(pose_t, (e, n, u), noise, self._biases.take(), too_fast)
+
+    def tells_again(self, reading: Displacement) -> bool:
+        """Whether a displacement sums up so much that its unit has told that the rest is anybody's guess."""
+        from_t = reading.from_t
+        return from_t is not None and self._unit_t is not None and from_t < self._unit_t - AGAIN_S
 
     def pace_mps(self) -> Vector3:
         """How fast the bearer has gone in the last stride, in the unit's frame: east, north, up (m/s)."""
