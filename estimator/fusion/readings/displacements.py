@@ -121,12 +121,14 @@ def _extend(state: FusionState, step: Step, reading: Displacement, biases: list[
     increment = step.take(reading)
     if increment is None:
         text = f"{node.node} reported another displacement that covers this one's epoch, which is set aside"
+        once = f"epochs of {node.node}"
         if step.tells_again(reading):
+            once = f"from_t of {node.node}"
             text = f"{node.node} reports again since {reading.from_t} s, of which it has told before: that "
             text += "is set aside, and the position goes on without it; look at from_t of its gateway"
         elif node.unit_t is None and not step.taken:
             text = f"{node.node} was placed after this displacement, which is set aside"
-        state.say("conflict", reading.t, node.node, text, once=f"epochs of {node.node}")
+        state.say("conflict", reading.t, node.node, text, once=once)
         _count(state, reading, "not_fused")
         return False
     if increment.too_fast:

@@ -2,59 +2,39 @@
 
 import math
 
-import numpy as np
 import pytest
 from msgspec import structs
 
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
-from estimator.measurements.range import Range
 from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import SURE, outside
+from tests.estimator.fusion.readings.test_impossible_ranges import among_four
 
-SECONDS, SOUND_S = 80, 20
-CORNERS = {"a1": (-22.0, -20.0), "a2": (21.0, -22.0), "a3": (20.0, 21.0), "a4": (-21.0, 19.0)}
+SECONDS, SOUND_S = 60, 20
+SOUND, WAY_M = among_four({}, unit=True)
+"""He goes round among four anchors, whose ranges are sound; where he is each second (m)."""
 
 
-def leaps_in_the_yard(step_m: float) -> list[AnyReading]:
+def leaps(step_m: float) -> list[AnyReading]:
     """His unit tells steps of so many metres from some time on."""
     return [
         structs.replace(reading, delta_m=(step_m, -step_m, step_m))
         if isinstance(reading, Displacement) and reading.t > SOUND_S
         else reading
-        for reading in round_the_yard()
+        for reading in SOUND
     ]
-
-
-def round_the_yard() -> list[AnyReading]:
-    """He goes round among four anchors."""
-    chance = np.random.default_rng(3)
-    readings: list[AnyReading] = [Node(t=0.0, node="ff1", role="responder", position_m=(*place_m(0), 0.0))]
-    for name, (east, north) in CORNERS.items():
-        readings.append(Node(t=0.0, node=name, role="anchor", position_m=(east, north, 0.0), sigma_m=0.1))
-    for second in range(1, SECONDS + 1):
-        here_m, before_m = place_m(second), place_m(second - 1)
-        gone_m = (here_m[0] - before_m[0], here_m[1] - before_m[1], 0.0)
-        readings.append(Displacement(t=float(second), node="ff1", delta_m=gone_m))
-        for name, at_m in CORNERS.items():
-            range_m = math.dist(here_m, at_m) + float(chance.normal(0.0, 0.1))
-            readings.append(Range(t=float(second), a="ff1", b=name, range_m=range_m, technology="uwb"))
-    return readings
-
-
-def place_m(second: int) -> tuple[float, float]:
-    return 10.0 * math.cos(0.1 * second), 10.0 * math.sin(0.1 * second)
 
 
 @pytest.mark.parametrize("step_m", [1e3, 1e5])
 def test_who_is_told_to_leap_is_shown_where_ranges_say_live_and_looking_back(step_m: float) -> None:
-    shown_where_he_is(leaps_in_the_yard(step_m))
+    shown_where_he_is(leaps(step_m))
 
 
 def test_the_commander_is_told_what_was_reported_and_that_it_is_not_used() -> None:
-    leap = notice_of(leaps_in_the_yard(1e3), "faster than anyone runs")
+    leap = notice_of(leaps(1e3), "faster than anyone runs")
     assert "1732.1 m" in leap
     assert "tells nothing" in leap
 
@@ -63,7 +43,7 @@ def test_a_gateway_that_tells_always_the_same_from_t_leads_nobody_astray() -> No
     """Its displacements are those of a second, and said to be since the beginning."""
     readings = [
         structs.replace(reading, from_t=0.0) if isinstance(reading, Displacement) else reading
-        for reading in round_the_yard()
+        for reading in SOUND
     ]
     shown_where_he_is(readings)
     assert "look at from_t of its gateway" in notice_of(readings, "reports again since 0.0 s")
@@ -89,9 +69,9 @@ def shown_where_he_is(readings: list[AnyReading]) -> None:
     tracker.fold(readings)
     shown = next(e for e in tracker.estimates() if e.node == "ff1")
     assert shown.position_m is not None
-    assert math.dist(shown.position_m[:2], place_m(SECONDS)) < 1.0
+    assert math.dist(shown.position_m[:2], WAY_M[-1]) < 1.0
     for point in BatchSmoother().smooth(readings)["ff1"]:
-        assert outside(point.position_m, point.covariance_m2, place_m(round(point.t))) < SURE
+        assert outside(point.position_m, point.covariance_m2, WAY_M[round(point.t)]) < SURE
 
 
 def notice_of(readings: list[AnyReading], words: str) -> str:
