@@ -164,7 +164,7 @@ def _warm_chain() -> None:
         Nodes(slab, slab, slab, place), np.arange(2.0), np.zeros((2, 1)), pair, ways_of([0], [way])
     )
     heard, read, laid = (np.zeros((1, len(COLUMNS[name]))) for name in ("pairs", "singles", "drops"))
-    lost = Losses(slab, slab, 0.0, 1.0, np.zeros((1, 1, 1), dtype=np.int64))
+    lost = Losses(slab, slab, 0.0, 1.0, np.zeros((2, 1, 1, 1), dtype=np.int64))
     mark_heard(heard, 0.0, lost)
     found = window_readings(LedgerRows(heard, read, laid), 0.0, ground, pair, lost, no, slab)
     ahead(heard, slab, ground, no, states, place)

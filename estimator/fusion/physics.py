@@ -192,20 +192,6 @@ ENCOUNTER_M = 3.0
 RSSI_NOISE = Mixture(outliers=0.05, shift=-8.0, spread=12.0)
 """A wall, a body or a fire takes away power; nothing adds much."""
 
-LOSS_SIGMA_DB = 2.0
-LOSS = Mixture(outliers=0.5, shift=14.0, spread=10.0)
-"""What is lost of all powers between a crew and a vehicle (counted positive): in sight nothing, but radios
-tell powers to 2 dB only; behind a building's shell 14 dB, and buildings differ by 10 (ITU-R P.2109,
-traditional ones at 2.4 GHz)."""
-GAINED_SIGMA_DB = 4.0
-"""Nothing adds power, but antennas differ by so much."""
-LOSS_BESIDE = Mixture(outliers=0.5, shift=0.0, spread=6.0)
-"""What radios on different sides of a building lose beside that: nothing, or two walls more."""
-LOSS_WALK_DB = 1.0
-LOSS_CHANGES = Mixture(outliers=0.3, shift=0.0, spread=10.0)
-LOSS_BESIDE_CHANGES = Mixture(outliers=0.1, shift=0.0, spread=6.0)
-"""What they change by in a minute: little, or as much as there is, for the crew has gone in, up or across."""
-
 BODIES = 0.5
 """How many radios are worn where bodies are seen in what they tell."""
 NO_BODY_M, NO_BODY_DB = 0.02, 0.5

@@ -17,9 +17,9 @@ from estimator.smoothing.images.alternatives import Mode
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.learning.delays import CLEARER, ODDS, RARE, delays, doubted
 from estimator.smoothing.learning.range_noise import learn_ranging
+from estimator.smoothing.learning.slips import withdraw
 from estimator.smoothing.learning.trusted_radios import distrust, trust_dropped
 from estimator.smoothing.learning.unit_noise import learn
-from estimator.smoothing.learning.wrong_steps import withdraw
 from estimator.smoothing.problem.newton import METRES_OFF, RESTING, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
@@ -104,21 +104,21 @@ def _solved(state: FusionState) -> tuple[Problem, Solution]:
     problem, solved = min(begun, key=lambda one: _misfit(one[0], one[1], placed))
     state, rows = problem.layout.state, problem.rows
     first, *later = LEARNING
-    learn(state, problem, solved, first, kinds=False)
+    learn(state, problem, solved, _problem, first, kinds=False)
     learn_ranging(state, problem, solved)
     # Where no wall is, what is assumed of it would have a unit's noise explain less than it does.
     rows.learn(state.noise, walls=False)
     for most in later:
         problem = problem.with_units(_layout(state))
         solved = problem.solve(solved.x, iterations=1)
-        learn(state, problem, solved, most, kinds=False)
+        learn(state, problem, solved, _problem, most, kinds=False)
     problem = _problem(state)
     problem, solved = _with_moved_nodes(problem, problem.solve(solved.x), RESTING)
     # Last, for a node that was moved makes ranges differ like a wall.
     rows, _ = problem.rows.obstructed(solved.x, np.ones(len(problem.rows.t), dtype=np.bool_))
-    if not rows.shift.any():
+    if not rows.shift.any() and not problem.layout.ranges_lose:
         return problem, solved
-    problem = problem.with_rows(rows)
+    problem = problem.with_rows(rows).with_losses()
     return problem, problem.solve(solved.x)
 
 

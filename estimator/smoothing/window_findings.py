@@ -1,6 +1,6 @@
 """What a solved window tells: what may be wrong, what is learned, who lies elsewhere, who faces where."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 
 import numpy as np
 from msgspec.structs import replace
@@ -28,13 +28,16 @@ from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.told_causes import NONE, Causes, ask
 
 
-def tell_findings(state: FusionState, judged: JudgedImages, solved_t: float) -> Causes:
+def tell_findings(
+    state: FusionState, judged: JudgedImages, solved_t: float, build: Callable[[FusionState], Problem]
+) -> Causes:
     """Tell a fusion, which has gone on from a solution of its window, what else follows from that.
 
     Args:
         state: the fusion, changed in place; where a node lies elsewhere, the window is due again.
         judged: the solution.
         solved_t: when the window was last solved (s).
+        build: builds the problem of a fusion.
 
     Returns:
         What was told and may be wrong, not corrected yet.
@@ -43,7 +46,7 @@ def tell_findings(state: FusionState, judged: JudgedImages, solved_t: float) -> 
     causes = ask(problem, solved) if solved.rests else NONE
     if solved.rests:
         causes.doubt(state)
-    found = learn(state, problem, solved, other=causes.odds)
+    found = learn(state, problem, solved, build, other=causes.odds)
     hearing = RecentRanges(problem, solved)
     find_separated_units(state, hearing, set_clocks(state, hearing, solved_t))
     tell_duplicate_names(state, hearing)

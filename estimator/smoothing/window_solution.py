@@ -62,7 +62,7 @@ def refresh(state: FusionState, solved_t: float, bent: bool = False, effort: Eff
         clear = _past_walls(state, judged)
         trimmed = trim(clear.problem, clear.solved)
         _hand_back(state, clear, mountings)
-        causes = tell_findings(state, judged, solved_t)
+        causes = tell_findings(state, judged, solved_t, partial(_problem, since=since))
     except ValueError as error:
         text = f"the last minutes could not be solved again, positions go on without: {error}"
         state.say("unsolved", state.newest_t, None, text)
@@ -134,7 +134,9 @@ def _solved(problem: Problem, x: Array, solved_t: float, bent: bool) -> Solution
 
 
 def _past_walls(state: FusionState, judged: JudgedImages) -> JudgedImages:
-    """The solution with what walls add to ranges taken off; the filter takes it off each link's next ones.
+    """The solution with what walls add to ranges taken off, and what crews lose to anchors asked.
+
+    The filter takes what walls add off each link's next ranges.
 
     All else is asked of the window without that, and its outliers are left what they are: the first ranges to
     a breadcrumb that was kicked scatter as well, and taken for a wall's they would lead who passes astray.
@@ -145,9 +147,9 @@ def _past_walls(state: FusionState, judged: JudgedImages) -> JudgedImages:
     is_clear = walls.mean_m.max(initial=0.0) < physics.WALL_M
     told = [np.zeros_like(one) if is_clear else one for one in walls]
     state.links.tell_walls(rows.pairs[:, LINK].astype(np.intp), *told)
-    if is_clear:
+    if is_clear and not judged.problem.layout.ranges_lose:
         return judged
-    problem = judged.problem.with_rows(rows)
+    problem = (judged.problem if is_clear else judged.problem.with_rows(rows)).with_losses()
     return judged._replace(problem=problem, solved=problem.solve(solved.x, (), ITERATIONS, RESTING))
 
 
@@ -167,7 +169,7 @@ def _remember(state: FusionState, judged: JudgedImages, trimmed: tuple[Prior, fl
     layout, x = judged.problem.layout, judged.solved.x
     keep_keyframes(state, layout, x)
     border = x[layout.length * layout.width :]
-    state.lost_db = {number: float(border[one.column]) for (_, number), one in layout.lost.items()}
+    state.lost = {number: float(border[one.column]) for (_, number), one in layout.lost.items()}
     state.prior = judged.problem.prior
     if trimmed is not None:
         state.prior, state.window_t = trimmed

@@ -72,7 +72,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     mistold: dict[str, MistoldPlace]
     altimeters: dict[str, float]
     receivers: dict[str, Receiver]
-    lost_db: dict[int, float]
+    lost: dict[int, float]
     clocks: dict[str, float]
     reach: Reach
     listeners: dict[str, Listener]
@@ -127,7 +127,7 @@ def record_of(state: FusionState) -> FusionRecord:
         dict(state.mistold),
         dict(state.altimeters),
         dict(state.receivers),
-        dict(state.lost_db),
+        dict(state.lost),
         dict(state.clocks),
         state.reach,
         dict(state.listeners),
@@ -160,7 +160,7 @@ def state_of(record: FusionRecord) -> FusionState:
     state.suspects, state.mistold = dict(record.suspects), record.mistold
     state.altimeters = dict(record.altimeters)
     state.receivers, state.clocks = dict(record.receivers), dict(record.clocks)
-    state.lost_db = dict(record.lost_db)
+    state.lost = dict(record.lost)
     state.reach, state.listeners = record.reach, record.listeners
     if record.prior is not None:
         matrix, vector, reference = (unpack(a) for a in record.prior.arrays)

@@ -73,7 +73,7 @@ class FusionState:
         mistold: told places that may be wrong, by node.
         altimeters: standard deviations of what they are off by beforehand, by their names (m).
         receivers: what is known beforehand of the fixes of those who fly, by their names.
-        lost_db: what powers lose by the newest window, by number: it starts from there again (dB).
+        lost: what powers and ranges lose by the newest window, by number: it starts from there again (dB, m).
         clocks: how late ranges of radios are stamped against their bearers' steps, by node (s).
         reach: how far radios reach.
         listeners: what each radio has been hearing.
@@ -119,7 +119,7 @@ class FusionState:
         self.mistold: dict[str, MistoldPlace] = {}
         self.altimeters: dict[str, float] = {}
         self.receivers: dict[str, Receiver] = {}
-        self.lost_db: dict[int, float] = {}
+        self.lost: dict[int, float] = {}
         self.clocks: dict[str, float] = {}
         self.reach = Reach()
         self.listeners: dict[str, Listener] = {}

@@ -54,8 +54,8 @@ def solutions(
     # What begins far off may lead nearest: what is likeliest with all others held is solved first.
     led.sort(key=lambda one: one.cost)
     for start, cost in led[:most]:
-        # With nobody held it has led nowhere yet.
-        slacks = _slacks(start.flip) if cost == math.inf else ()
+        # With nobody held it has led nowhere yet: it is as far off as what it is an image of.
+        slacks = SLACKS_M if cost == math.inf else ()
         solution = local_solution(asked.problem, start.x, slacks, found[0].solved)
         if solution is None:
             continue

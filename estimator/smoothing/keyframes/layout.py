@@ -7,7 +7,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from estimator.fusion.memory.ledger import UNTOLD_POWER
+from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.prior import Key, Prior
 from estimator.fusion.memory.state import FusionState
@@ -146,6 +146,11 @@ class Layout:
         return np.concatenate([np.zeros(0, dtype=np.int64), *each])
 
     @property
+    def ranges_lose(self) -> bool:
+        """Whether ranges between a crew and an anchor are asked what they lose."""
+        return any(loss.kind == RANGE for loss in self.lost.values())
+
+    @property
     def length(self) -> int:
         """Number of keyframes."""
         return len(self.grid)
@@ -184,7 +189,7 @@ class Layout:
                 border[at : at + DIMENSION[variable.kind]] = self.state.graph.value(variable)
         for (_, number), one in self.lost.items():
             usual = 0.0 if one.before is None else border[self.lost[one.before].column]
-            border[one.column] = self.state.lost_db.get(number, usual)
+            border[one.column] = self.state.lost.get(number, usual)
         return x
 
     def states(self, x: Array, index: int) -> Array:

@@ -1,8 +1,8 @@
-"""What walls take of the powers between a crew and an anchor, as a vehicle is: one number for each minute.
+"""What walls do to all readings between a crew and an anchor, as a vehicle is: one number for each minute.
 
 Floors, walls and the building's shell lie between everybody of a crew inside and the vehicle outside: all
-their powers are too weak alike. Taken for errors of each link, that turns the map until it fits (decision
-0123).
+their powers are too weak alike (decision 0123), and all their ranges too long (decision 0125). Taken for
+errors of each link, that turns the map until it fits. Both are called losses here.
 """
 
 import math
@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion.memory.ledger import RSSI
+from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.fusion.memory.prior import Key
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.chain_kernels import Integers
@@ -25,20 +25,22 @@ KEPT_S = 600.0
 """What was lost so long ago tells nothing of what is lost."""
 NODES, SECONDS = 1 << 15, 1 << 32
 """There are fewer nodes in any ledger, and epochs are smaller."""
+KINDS = max(RANGE, RSSI) + 1
+"""Of the readings that lose something: each has losses of its own."""
 EVERYONE = NODES - 1
-"""Whom a crew loses powers to in what it loses to all radios alike."""
+"""Whom a crew's readings lose something to in what they lose to all radios alike."""
 
 
 class Losses(NamedTuple):
-    """Which powers lose what.
+    """Which ranges and powers lose what.
 
     Attributes:
         crew: the row in `columns` of each number in the ledger; −1: it is no bearer of a unit.
         radio: the column there of each number; −1: it is no anchor.
         since_s: epoch at which the first step begins (s).
         step_s: how long each lasts (s).
-        columns: of the border, of what each crew loses to each radio, and at last to all alike, in each step,
-            crews × (radios + 1) × steps; −1: they hear nothing of each other.
+        columns: of the border, of what each kind of readings of each crew loses to each radio, and at last to
+            all alike, in each step, kinds × crews × (radios + 1) × steps; −1: there are none of them.
     """
 
     crew: Integers
@@ -53,12 +55,14 @@ class Loss(NamedTuple):
 
     Attributes:
         column: of the border.
+        kind: of the readings that lose it.
         since_s: epoch at which its step begins (s).
         before: the block of what the same crew lost to the same radio before it; None: of nothing before.
         common: the block of what the crew loses to all radios in that step; None: this is it.
     """
 
     column: int
+    kind: int
     since_s: float
     before: Key | None
     common: Key | None
@@ -94,39 +98,40 @@ def losses_of(
     radio[radios] = np.arange(len(radios))
     others = [*radios, EVERYONE]
     known = [parts_of(number) for kind, number in carried if kind == "loss"]
-    since_s = min([since_t // step_s * step_s, *(since for _, _, since in known)])
+    since_s = min([since_t // step_s * step_s, *(since for *_, since in known)])
     # Most incidents have no anchor: then nobody is asked whom he hears.
     steps = int((float(grid[-1]) - since_s) // step_s) + 1 if radios else 0
-    columns = np.full((len(crews), len(others), steps), -1)
+    columns = np.full((KINDS, len(crews), len(others), steps), -1)
     found = Losses(crew, radio, since_s, step_s, columns)
     if columns.size:
         mark_heard(state.ledger.table("pairs"), since_t, found)
-    for leader, other, since in known if radios else ():
+    for kind, leader, other, since in known if radios else ():
         if leader in crews and other in others:
-            columns[crews.index(leader), others.index(other), int((since - since_s) // step_s)] = 0
-    columns[:, -1] = columns.max(axis=1)
+            step = int((since - since_s) // step_s)
+            columns[kind, crews.index(leader), others.index(other), step] = 0
+    columns[:, :, -1] = columns.max(axis=2)
     at = np.argwhere(columns >= 0)
     columns[tuple(at.T)] = start + np.arange(len(at))
     blocks: dict[Key, Loss] = {}
-    newest: dict[tuple[int, int], Key] = {}
-    for column, (row, other, step) in enumerate(at.tolist()):
-        begins_s = since_s + step * step_s
-        key, common = (_key(crews[row], whom, begins_s) for whom in (others[other], EVERYONE))
-        blocks[key] = Loss(
-            start + column, begins_s, newest.get((row, other)), None if key == common else common
-        )
-        newest[row, other] = key
+    newest: dict[tuple[int, int, int], Key] = {}
+    for column, (kind, row, other, step) in enumerate(at.tolist()):
+        begins_s, before = since_s + step * step_s, newest.get((kind, row, other))
+        key, common = (_key(kind, crews[row], whom, begins_s) for whom in (others[other], EVERYONE))
+        blocks[key] = Loss(start + column, kind, begins_s, before, None if key == common else common)
+        newest[kind, row, other] = key
     return found, blocks
 
 
-def _key(leader: int, radio: int, since_s: float) -> Key:
-    return "loss", (leader * NODES + radio) * SECONDS + int(since_s)
+def _key(kind: int, leader: int, radio: int, since_s: float) -> Key:
+    return "loss", ((leader * KINDS + kind) * NODES + radio) * SECONDS + int(since_s)
 
 
-def parts_of(number: int) -> tuple[int, int, float]:
-    """Of the number of a loss: the first node of the crew, the radio, and when its step begins (s)."""
+def parts_of(number: int) -> tuple[int, int, int, float]:
+    """Of the number of a loss: the kind, the crew's first node, the radio, and when its step begins (s)."""
     pair, since_s = divmod(number, SECONDS)
-    return *divmod(pair, NODES), float(since_s)
+    crew, radio = divmod(pair, NODES)
+    leader, kind = divmod(crew, KINDS)
+    return kind, leader, radio, float(since_s)
 
 
 def going_on(lost: Mapping[Key, Loss], cut_t: float) -> list[Key]:
@@ -143,7 +148,7 @@ def going_on(lost: Mapping[Key, Loss], cut_t: float) -> list[Key]:
 
 @njit(cache=True)
 def mark_heard(pairs: Array, since_t: float, losses: Losses) -> None:
-    """Mark who hears whom by powers.
+    """Mark who hears whom, and by what kind of readings.
 
     Args:
         pairs: rows of the ledger, m × 11.
@@ -151,26 +156,27 @@ def mark_heard(pairs: Array, since_t: float, losses: Losses) -> None:
         losses: whose columns take 0 where they do.
     """
     for i in range(len(pairs)):
-        if pairs[i, 0] >= since_t and int(pairs[i, 1]) == RSSI:
-            crew, radio, step = place_of(losses, pairs[i])
-            if crew >= 0:
-                losses.columns[crew, radio, step] = 0
+        if pairs[i, 0] >= since_t:
+            kind, crew, radio, step = place_of(losses, pairs[i])
+            if kind >= 0:
+                losses.columns[kind, crew, radio, step] = 0
 
 
 @njit(cache=True)
-def place_of(losses: Losses, pair: Array) -> tuple[int, int, int]:
-    """Where in `Losses.columns` what a power, 11, has lost is; −1: nowhere."""
+def place_of(losses: Losses, pair: Array) -> tuple[int, int, int, int]:
+    """Where in `Losses.columns` what a pair, 11, has lost is; −1: nowhere."""
+    kind = int(pair[1])
     a, b, step = int(pair[2]), int(pair[3]), int((pair[0] - losses.since_s) // losses.step_s)
-    if 0 <= step < losses.columns.shape[2]:
+    if kind < KINDS and 0 <= step < losses.columns.shape[3]:
         if losses.crew[a] >= 0 and losses.radio[b] >= 0:
-            return losses.crew[a], losses.radio[b], step
+            return kind, losses.crew[a], losses.radio[b], step
         if losses.crew[b] >= 0 and losses.radio[a] >= 0:
-            return losses.crew[b], losses.radio[a], step
-    return -1, -1, -1
+            return kind, losses.crew[b], losses.radio[a], step
+    return -1, -1, -1, -1
 
 
 @njit(cache=True)
 def loss_column(losses: Losses, pair: Array) -> int:
-    """Which column of the border what a power, 11, has lost is; −1: none."""
-    crew, radio, step = place_of(losses, pair)
-    return losses.columns[crew, radio, step] if crew >= 0 else -1
+    """Which column of the border what a pair, 11, has lost is; −1: none."""
+    kind, crew, radio, step = place_of(losses, pair)
+    return losses.columns[kind, crew, radio, step] if kind >= 0 else -1

@@ -7,6 +7,7 @@ what the radio does not see of a step stays in V.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from msgspec.structs import replace
@@ -22,8 +23,9 @@ from estimator.graph.variable import BODY
 from estimator.smoothing.keyframes.walks import STATES, Motion
 from estimator.smoothing.learning.delays import doubt_delays
 from estimator.smoothing.learning.range_noise import learn_ranging
+from estimator.smoothing.learning.slips import widen_steps
 from estimator.smoothing.learning.trusted_radios import trust_regained
-from estimator.smoothing.learning.wrong_steps import Doubts, doubts_of, find_slips, widen_steps
+from estimator.smoothing.learning.wrong_steps import Doubts, doubts_of, find_slips
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 
@@ -49,6 +51,7 @@ def learn(
     state: FusionState,
     problem: Problem,
     solved: Solution,
+    build: Callable[[FusionState], Problem],
     step: float = STEP,
     kinds: bool = True,
     other: float = -math.inf,
@@ -59,6 +62,7 @@ def learn(
         state: takes what is learned.
         problem: of the window.
         solved: its solution, whose chain is eliminated here.
+        build: builds the same problem of a fusion.
         step: farthest that the logarithm of a variance moves at once.
         kinds: technologies are judged as well.
         other: see `delays.doubt_delays`.
@@ -71,7 +75,7 @@ def learn(
     doubts = doubts_of(problem, solved, found, ahead)
     learn_walks(state, problem, solved, doubts, step)
     if solved.rests:
-        slips = find_slips(problem, solved, doubts)
+        slips = find_slips(problem, solved, doubts, build)
         widen_steps(state, slips)
         state.due = state.due or bool(slips)
     if kinds:

@@ -5,43 +5,25 @@ over a minute of it. What stands out is the smoothed disturbance, ŵ of a step h
 by, Q − V (auxiliary residuals: de Jong and Penzer, Diagnosing shocks in time series, JASA 93, 1998).
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
 
 import numpy as np
 from numba import njit
 
 from estimator.fusion import physics
-from estimator.fusion.memory.ledger import CLAIMED
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.walks import Motion
+from estimator.smoothing.learning.slip_judgement import APART_S, judged
+from estimator.smoothing.learning.slips import Slip
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 
 Doubts = dict[int, Array]
 """V of the steps of each walk that has a unit, by the walk's place in the window."""
 
-SLIP_M = physics.SLIP_M
-APART_S = 30.0
-"""Steps as near as this to a slip stand out because of it."""
-ELSE = 1.0
-"""Log odds of a slip, before how rare it is, that must be left without the radio that tells most of it."""
 NOTHING = 1e-9
 """Share of a step's information below which readings tell nothing of it (m⁻²)."""
-
-
-class Slip(NamedTuple):
-    """A step that was reported wrongly.
-
-    Attributes:
-        number: of the unit's node in the ledger.
-        t: middle of the step's time (s).
-        off_m: what is missing of it, or too much: east, north (m).
-    """
-
-    number: int
-    t: float
-    off_m: tuple[float, float]
 
 
 @njit(cache=True)
@@ -113,7 +95,7 @@ def gains(motion: Motion, unsure_of: Array) -> tuple[Array, Array]:
     """
     count, size = motion.residual.shape
     gain, off, pulled, told = np.empty(count), np.empty((count, 2)), np.empty(2), np.empty((2, 2))
-    usual = 1.0 / SLIP_M**2
+    usual = 1.0 / physics.SLIP_M**2
     for i in range(count):
         known, doubt = motion.information[i], unsure_of[i]
         for r in range(2):
@@ -139,13 +121,16 @@ def gains(motion: Motion, unsure_of: Array) -> tuple[Array, Array]:
     return gain, off
 
 
-def find_slips(problem: Problem, solved: Solution, doubts: Doubts) -> list[Slip]:
+def find_slips(
+    problem: Problem, solved: Solution, doubts: Doubts, build: Callable[[FusionState], Problem]
+) -> list[Slip]:
     """The steps of all units that are likelier to have slipped than not.
 
     Args:
         problem: of a window.
         solved: its solution.
         doubts: see `doubts_of`.
+        build: builds the same problem of a fusion.
     """
     slips = []
     for i, doubt in doubts.items():
@@ -153,57 +138,12 @@ def find_slips(problem: Problem, solved: Solution, doubts: Doubts) -> list[Slip]
         gain, off = gains(solved.motions[i], doubt)
         times = problem.layout.times[walk.first : walk.last + 1, i]
         middle = 0.5 * (times[:-1] + times[1:])
+        # Steps near a slip stand out because of it.
         while len(gain) and gain.max() > physics.SLIP_RARE:
             k = int(gain.argmax())
             east, north = off[k].tolist()
             slip = Slip(walk.number, float(middle[k]), (east, north))
-            if _confirmed(problem, solved, slip, float(gain[k])):
-                slips.append(slip)
+            found = judged(problem, solved, slip, float(gain[k]), build)
+            slips += [] if found is None else [found]
             gain = np.where(np.abs(middle - middle[k]) < APART_S, -np.inf, gain)
     return slips
-
-
-def _confirmed(problem: Problem, solved: Solution, slip: Slip, gain: float) -> bool:
-    """Whether a slip would be found without the radio that pulls most at the ways before and after it.
-
-    A wall that comes between two radios, or a breadcrumb that was kicked, changes what one of them says.
-    """
-    pairs, m = problem.rows.pairs, len(problem.rows.pairs)
-    force = (solved.weighted.information * solved.weighted.residual)[:m]
-    since = problem.rows.t[:m] - slip.t
-    pull = np.zeros(len(problem.layout.state.owners))
-    for own, other, columns in ((2, 3, slice(0, 2)), (3, 2, slice(6, 8))):
-        near = np.flatnonzero((pairs[:, own] == slip.number) & (np.abs(since) < APART_S))
-        along = solved.linear.jacobian[near, columns] @ np.array(slip.off_m)
-        np.add.at(pull, pairs[near, other].astype(np.int64), along * force[near] * np.sign(since[near]))
-    rest = pull.sum() - pull.max()
-    return bool(rest > 0.0 and gain * (rest / pull.sum()) ** 2 > ELSE)
-
-
-def withdraw(state: FusionState) -> None:
-    """Take back all slips: whoever knows more is to judge them again.
-
-    Args:
-        state: its ledger loses the steps without displacement or time that stand for them.
-    """
-    steps = state.ledger.table("steps")
-    slipped = (steps[:, 0] == steps[:, 2]) & (steps[:, 6] == physics.SLIP_M**2)
-    state.ledger.replace("steps", steps[~slipped])
-
-
-def widen_steps(state: FusionState, slips: list[Slip]) -> None:
-    """Let the ledger's steps be as uncertain as slips are, where they have been found.
-
-    Args:
-        state: its ledger takes a step without displacement for each.
-        slips: of a solved window; whoever solves it again finds them no more.
-    """
-    for slip in slips:
-        up2, given = physics.DISPLACEMENT_FLOOR_M**2, CLAIMED
-        state.ledger.add(
-            "steps", slip.t, slip.number, slip.t, *(0.0,) * 3, physics.SLIP_M**2, up2, 0.0, 0.0, 0.0, given
-        )
-        name = state.owners[slip.number]
-        text = f"{name} reported a step wrongly, by {np.hypot(*slip.off_m):.1f} m: it stumbled or slid"
-        state.say("outlier", slip.t, name, text)
-        state.count("outlier")

@@ -1,4 +1,4 @@
-"""What is known beforehand of what powers lose: in sight nothing, else much; and mostly as much as before."""
+"""What is known beforehand of losses: in sight nothing is lost, else much; and mostly as much as before."""
 
 import math
 from collections.abc import Collection, Mapping
@@ -7,15 +7,19 @@ from typing import Self
 
 import numpy as np
 
-from estimator.fusion import physics
 from estimator.fusion.memory.prior import Key
 from estimator.graph.dense import Array, Indices
 from estimator.graph.robust import Mixture, Weighted, mixture_cost, weigh
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.losses import STEP_S, Loss
+from estimator.smoothing.problem.usual_losses import USUAL_LOSSES
 
 SIGNS = np.array([1.0, -1.0, -1.0, 1.0])
 """Of what a loss is more than what is lost to all radios, the change since the one before."""
+
+
+HELD = 1e-3, 0.0, 0.0, 1.0
+"""What is held is as good as known."""
 
 
 class LossWalks:
@@ -26,6 +30,7 @@ class LossWalks:
     Args:
         layout: of the window.
         known: the blocks that the window's prior tells of already.
+        held: kinds of readings of which nothing is lost but what the prior tells.
 
     Attributes:
         columns: of the border, m × 4: a loss, what is lost to all radios then, and both before it; −1: none.
@@ -35,14 +40,18 @@ class LossWalks:
         size: how many numbers come before the border.
     """
 
-    def __init__(self, layout: Layout, known: Collection[Key]) -> None:
+    def __init__(self, layout: Layout, known: Collection[Key], held: Collection[int] = ()) -> None:
         lost = layout.lost
         told = [one for key, one in lost.items() if key not in known]
-        ends = [_columns(lost, one) for one in told] + [(one.column, -1, -1, -1) for one in told]
+        gained = [(one, usual) for one in told if (usual := USUAL_LOSSES[one.kind].gained) is not None]
+        ends = [_columns(lost, one) for one in told] + [(one.column, -1, -1, -1) for one, _ in gained]
         self.columns: Indices = np.array(ends, dtype=np.intp).reshape(-1, 4)
         self.jacobian: Array = np.where(self.columns >= 0, SIGNS, 0.0)
-        rows = [_noise(one, None if one.before is None else lost[one.before]) for one in told]
-        rows += [(physics.GAINED_SIGMA_DB, 0.0, 0.0, 1.0)] * len(told)
+        rows = [
+            HELD if one.kind in held else _noise(one, None if one.before is None else lost[one.before])
+            for one in told
+        ]
+        rows += [(usual, 0.0, 0.0, 1.0) for _, usual in gained]
         self.gains = np.arange(len(ends)) >= len(told)
         self.noise: Array = np.array(rows, dtype=np.float64).reshape(-1, 4).T.copy()
         self.size = layout.length * layout.width
@@ -70,7 +79,7 @@ class LossWalks:
         return found
 
     def residual(self, x: Array) -> Array:
-        """What is read, nil, less what is lost at an estimate, flat, m (dB)."""
+        """What is read, nil, less what is lost at an estimate, flat, m (dB, or m)."""
         return np.asarray(-(self.jacobian * x[self.size + self.columns]).sum(axis=1))
 
 
@@ -88,10 +97,10 @@ def _common(lost: Mapping[Key, Loss], loss: Loss) -> Loss | None:
 
 def _noise(loss: Loss, before: Loss | None) -> tuple[float, float, float, float]:
     """Standard deviation of a loss, or of how it has changed, and its outliers."""
-    everyone = loss.common is None
+    common, beside, _ = USUAL_LOSSES[loss.kind]
+    usual = common if loss.common is None else beside
     if before is None:
-        return (physics.LOSS_SIGMA_DB, *(physics.LOSS if everyone else physics.LOSS_BESIDE))
-    usual = physics.LOSS_CHANGES if everyone else physics.LOSS_BESIDE_CHANGES
-    steps = (loss.since_s - before.since_s) / STEP_S
-    ever = Mixture(1.0 - (1.0 - usual.outliers) ** steps, usual.shift, usual.spread)
-    return (physics.LOSS_WALK_DB * math.sqrt(steps), *ever)
+        return (usual.sigma, *usual.behind)
+    changes, steps = usual.changes, (loss.since_s - before.since_s) / STEP_S
+    ever = Mixture(1.0 - (1.0 - changes.outliers) ** steps, changes.shift, changes.spread)
+    return (usual.walk * math.sqrt(steps), *ever)

@@ -7,6 +7,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.fusion.memory.ledger import RANGE
 from estimator.fusion.memory.prior import Prior
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array, Indices
@@ -34,6 +35,8 @@ from estimator.smoothing.readings.weights import weigh_readings
 class Objective:
     """What the best estimate of a window makes least: its negative log likelihood.
 
+    What ranges lose to anchors is held at first: see `with_losses`.
+
     Attributes:
         layout: its unknowns.
         rows: its readings.
@@ -45,9 +48,9 @@ class Objective:
 
     def __init__(self, layout: Layout, rows: Rows, prior: Prior | None) -> None:
         self.layout, self.rows, self.prior = layout, rows, prior
-        known = () if prior is None else prior.keys
+        self._known = known = () if prior is None else prior.keys
         self._at, self._mean, self._information = own_priors(layout, known)
-        self.lost = LossWalks(layout, known)
+        self.lost = LossWalks(layout, known, (RANGE,))
         self.going = Motions(layout)
         self._carried = None if prior is None else MarginalPrior(layout, prior)
         self.left_out: Integers = np.zeros(0, dtype=np.int64)
@@ -69,6 +72,12 @@ class Objective:
         """The same problem with its rows told otherwise how noisy they are, or what they are too long by."""
         other = copy(self)
         other.rows = rows
+        return other
+
+    def with_losses(self) -> Self:
+        """The same problem, which asks what ranges lose to anchors as well."""
+        other = copy(self)
+        other.lost = LossWalks(self.layout, self._known)
         return other
 
     def part(self, numbers: Unknowns, x: Array, chosen: NDArray[np.bool_], left: HeldQuadratic) -> Self:

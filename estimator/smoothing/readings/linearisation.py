@@ -27,7 +27,7 @@ class Readings(NamedTuple):
         constant: known part of a power (dB), or heading that a bearing counts from (rad), m.
         extra: where its technology's three numbers and what it loses are in the flat unknowns, m × 4; 0 if it
             has none.
-        lost: 1 where it loses something with others of its crew, m; else 0.
+        lost: 1 where a power loses something with others of its crew, −1 where a range is longer, m; else 0.
         ahead: how far ahead of its bearer the other radio lies, of ranges how far behind, m, see `bodies`.
         a: first ends of the pairs.
         b: second ends.

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from estimator.fusion import physics
 from estimator.graph.chain_kernels import Integers
@@ -51,6 +52,27 @@ class Excess(NamedTuple):
     mean_m: Array
     scatter_m2: Array
     doubt_m2: Array
+
+
+def excess_of(
+    among: NDArray[np.bool_], source: Integers, link: Integers, alike: Array, residual: Array, steep_m: Array
+) -> Excess:
+    """What some of m readings are too long by, those of each technology by themselves; the others by nothing.
+
+    Args:
+        among: which are asked, m.
+        source: number of each one's technology, m.
+        link: see `excess`.
+        alike: see `excess`.
+        residual: see `excess`.
+        steep_m: see `excess`.
+    """
+    found = Excess(*np.zeros((3, len(among))))
+    for technology in np.unique(source[among]):
+        at = np.flatnonzero(among & (source == technology))
+        for number, told in zip(found, excess(link[at], alike[at], residual[at], steep_m[at]), strict=True):
+            number[at] = told
+    return found
 
 
 def excess(link: Integers, alike: Array, residual: Array, steep_m: Array) -> Excess:

@@ -32,7 +32,7 @@ from estimator.smoothing.readings.linearisation import (
     scale_sigmas,
     separations,
 )
-from estimator.smoothing.readings.obstructed import Excess, excess
+from estimator.smoothing.readings.obstructed import Excess, excess_of
 from estimator.smoothing.readings.partial import partial
 from estimator.smoothing.readings.shadows import Shadows, shadows_of, take_shadows, with_shadows
 from estimator.smoothing.readings.sharing import powers_sharing
@@ -171,24 +171,22 @@ class Rows:
     def obstructed(self, x: Array, asked: NDArray[np.bool_]) -> tuple[Self, Excess]:
         """The same rows, less what ranges are too long by as their scatter tells; and what that is, of pairs.
 
+        Of those of a crew to an anchor, whose lengths tell a loss, it only says how unsure each is.
+
         Args:
             x: an estimate, flat.
             asked: which rows may tell, m: a node that was moved makes ranges scatter as well.
         """
         other, m = copy(self), len(self.pairs)
-        off = self._read(x)
-        among = self._inside & (self.pairs[:, 1] == RANGE) & ~self.through(x) & asked[:m]
+        shared = self._readings.lost != 0.0
+        among = (self._inside | shared) & (self.pairs[:, 1] == RANGE) & ~self.through(x) & asked[:m]
         steep_m = np.abs(separations(self._readings, x)[:, 2])
-        walls = Excess(*np.zeros((3, m)))
-        for source in np.unique(self.source[:m][among]):
-            at = np.flatnonzero(among & (self.source[:m] == source))
-            found = excess(self.pairs[at, 9].astype(np.int64), self.alike[at], off[at], steep_m[at])
-            for number, told in zip(walls, found, strict=True):
-                number[at] = told
-        other.shift = np.append(walls.mean_m, np.zeros(len(self.nominal) - m))
+        link = self.pairs[:, 9].astype(np.int64)
+        walls = excess_of(among, self.source[:m], link, self.alike[:m], self._read(x)[:m], steep_m)
+        other.shift = np.append(np.where(shared, 0.0, walls.mean_m), np.zeros(len(self.nominal) - m))
         white, common = self._white.copy(), self._common.copy()
         white[:m] += walls.scatter_m2
-        common[:m] += walls.doubt_m2
+        common[:m] += np.where(shared, 0.0, walls.doubt_m2)
         other.tell(white, common)
         return other, walls
 

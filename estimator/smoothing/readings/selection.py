@@ -47,7 +47,7 @@ def choose(
         a: their first ends.
         b: their second ends.
         technology: first column of each, kinds × sources; −1: there is none.
-        losses: what powers lose.
+        losses: what ranges and powers lose.
         width: columns of a keyframe.
         outside: whether each node of the ledger is outside the building.
     """
@@ -59,7 +59,7 @@ def choose(
         if kind <= RSSI and source >= 0 and technology[kind, source] >= 0:
             for c in range(3):
                 extra[i, c] = technology[kind, source] + c
-        if kind == RSSI and losses.columns.size:
+        if losses.columns.size:
             lost = loss_column(losses, pairs[i])
             extra[i, 3] = width + lost if lost >= 0 else -1
         a_moves, b_moves = a.kind[i] in (UNIT, FREE), b.kind[i] in (UNIT, FREE)

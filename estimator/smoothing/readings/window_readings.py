@@ -199,7 +199,7 @@ def read(
         pairs[:, 4].copy(),
         pairs[:, 7].copy(),
         at,
-        np.where(extra[:, 3] >= 0, 1.0, 0.0),
+        np.where(extra[:, 3] >= 0, np.where(pairs[:, 1] == RANGE, -1.0, 1.0), 0.0),
         np.zeros(len(pairs)),
         a.table,
         b.table,

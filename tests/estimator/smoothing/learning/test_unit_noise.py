@@ -160,7 +160,7 @@ def test_a_crew_that_stood_still_tells_how_well_the_gyro_of_the_next_one_is_cali
         fold_tick(state, float(second), stood)
     before = state.bias_sigma_radps(state.nodes["ff0"])
     problem = problem_of(state)
-    unit_noise.learn(state, problem, problem.solve(problem.layout.start()))
+    unit_noise.learn(state, problem, problem.solve(problem.layout.start()), problem_of)
     fold_tick(state, 61.0, [entered(node="new")])
     assert state.bias_sigma_radps(state.nodes["new"]) < 0.5 * before
     information, product = state.nodes["ff3"].bias_told

@@ -11,15 +11,8 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.learning.wrong_steps import (
-    Slip,
-    disturbance_covariance,
-    doubts_of,
-    find_slips,
-    gains,
-    widen_steps,
-    withdraw,
-)
+from estimator.smoothing.learning.slips import Slip, widen_steps
+from estimator.smoothing.learning.wrong_steps import disturbance_covariance, doubts_of, find_slips, gains
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.smoothing.windows import entered, fused, problem_of, unlikelihood
 
@@ -66,7 +59,7 @@ def slips_of(state: FusionState) -> list[Slip]:
     solved = problem.solve(problem.layout.start())
     solved.chain.solve()
     found, ahead, _ = solved.chain.covariances()
-    return find_slips(problem, solved, doubts_of(problem, solved, found, ahead))
+    return find_slips(problem, solved, doubts_of(problem, solved, found, ahead), problem_of)
 
 
 def said(readings: list[AnyReading]) -> tuple[list[str], list[float]]:
@@ -93,11 +86,6 @@ def test_noise_is_no_stumble(seed: int) -> None:
     assert slips_of(fused(walk(seed=seed))) == []
 
 
-def test_a_wall_before_one_anchor_is_no_stumble() -> None:
-    texts, _ = said(walk(too_long_m={"east": 1.0}))
-    assert texts == []
-
-
 def test_a_step_that_is_known_to_have_slipped_is_found_no_more() -> None:
     readings = walk((1.0, 0.0))
     state = fused(readings)
@@ -107,17 +95,6 @@ def test_a_step_that_is_known_to_have_slipped_is_found_no_more() -> None:
     assert math.hypot(slip.off_m[0] + 1.0, slip.off_m[1]) < 0.4
     widen_steps(state, [slip])
     assert slips_of(state) == []
-
-
-def test_slips_that_are_taken_back_leave_the_steps_as_they_were_reported() -> None:
-    state = fused(walk(slipped=(1.0, 0.5)))
-    withdraw(state)
-    reported = state.ledger.table("steps").copy()
-    widen_steps(state, [Slip(1, 20.0, (1.0, 0.0)), Slip(1, 60.0, (0.0, 1.0))])
-    assert len(state.ledger.table("steps")) == len(reported) + 2
-    withdraw(state)
-    assert (state.ledger.table("steps") == reported).all()
-    assert len(reported) == SECONDS
 
 
 def test_the_gain_is_what_the_slip_adds_to_the_marginal_likelihood() -> None:
