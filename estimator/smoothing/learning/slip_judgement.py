@@ -44,7 +44,8 @@ def judged(
         gain: its log odds, before how rare it is.
         build: builds the same problem of a fusion.
     """
-    if not _confirmed(problem, solved, slip, gain):
+    pull, farther_m = _pulls(problem, solved, slip)
+    if not _confirmed(problem, pull, gain):
         return None
     state = problem.layout.state
     steps = own_rows(state.ledger.table("steps"), slip.number)
@@ -56,19 +57,19 @@ def judged(
         widen_steps(other, [slip._replace(t=t)])
         costs.append(_cost(build(other), solved.x))
     best = int(np.argmin(costs))
-    walled = _walled(problem, solved, slip)
+    radio = int(np.argmax(pull))
+    walled = _walled(problem, solved.x, slip, radio, float(farther_m[radio]))
     if min(_cost(problem, x) for x in (solved.x, walled)) - costs[best] < physics.SLIP_RARE:
         return None
     return slip._replace(t=asked[best]) if costs[0] - costs[best] > CLEARER else slip
 
 
-def _confirmed(problem: Problem, solved: Solution, slip: Slip, gain: float) -> bool:
+def _confirmed(problem: Problem, pull: Array, gain: float) -> bool:
     """Whether a slip would be found without the radio that pulls most at the ways before and after it.
 
     A wall that comes between two radios, or a breadcrumb that was kicked, changes what one of them says. Of
     anchors, walls are asked of by themselves.
     """
-    pull, _ = _pulls(problem, solved, slip)
     asked = problem.layout.losses.radio[: len(pull)] >= 0
     rest = pull.sum() - np.where(asked, 0.0, pull).max()
     return bool(rest > 0.0 and gain * (rest / pull.sum()) ** 2 > ELSE)
@@ -99,13 +100,11 @@ def _cost(problem: Problem, x: Array) -> float:
     return problem.with_losses().solve(x, SLACKS_M, ITERATIONS, RESTING).cost
 
 
-def _walled(problem: Problem, solved: Solution, slip: Slip) -> Array:
-    """The solution, flat, with what a slip explains taken for a wall before the radio that pulls most."""
-    layout, x = problem.layout, solved.x.copy()
-    pull, farther_m = _pulls(problem, solved, slip)
-    radio = int(np.argmax(pull))
+def _walled(problem: Problem, x: Array, slip: Slip, radio: int, farther_m: float) -> Array:
+    """An estimate, flat, with what a slip explains taken for a wall before a radio that adds so much (m)."""
+    layout, x = problem.layout, x.copy()
     for (_, number), loss in layout.lost.items():
         kind, _, other, since_s = parts_of(number)
         if (kind, other) == (RANGE, radio) and since_s > slip.t - 0.5 * STEP_S:
-            x[layout.length * layout.width + loss.column] -= farther_m[radio]
+            x[layout.length * layout.width + loss.column] -= farther_m
     return x

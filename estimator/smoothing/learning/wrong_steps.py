@@ -138,12 +138,12 @@ def find_slips(
         gain, off = gains(solved.motions[i], doubt)
         times = problem.layout.times[walk.first : walk.last + 1, i]
         middle = 0.5 * (times[:-1] + times[1:])
-        # Steps near a slip stand out because of it.
         while len(gain) and gain.max() > physics.SLIP_RARE:
             k = int(gain.argmax())
             east, north = off[k].tolist()
             slip = Slip(walk.number, float(middle[k]), (east, north))
             found = judged(problem, solved, slip, float(gain[k]), build)
             slips += [] if found is None else [found]
+            # Steps near a slip stand out because of it.
             gain = np.where(np.abs(middle - middle[k]) < APART_S, -np.inf, gain)
     return slips

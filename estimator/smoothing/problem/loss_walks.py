@@ -16,8 +16,6 @@ from estimator.smoothing.problem.usual_losses import USUAL_LOSSES
 
 SIGNS = np.array([1.0, -1.0, -1.0, 1.0])
 """Of what a loss is more than what is lost to all radios, the change since the one before."""
-
-
 HELD = 1e-3, 0.0, 0.0, 1.0
 """What is held is as good as known."""
 

@@ -48,7 +48,7 @@ class Objective:
 
     def __init__(self, layout: Layout, rows: Rows, prior: Prior | None) -> None:
         self.layout, self.rows, self.prior = layout, rows, prior
-        self._known = known = () if prior is None else prior.keys
+        known = () if prior is None else prior.keys
         self._at, self._mean, self._information = own_priors(layout, known)
         self.lost = LossWalks(layout, known, (RANGE,))
         self.going = Motions(layout)
@@ -77,7 +77,7 @@ class Objective:
     def with_losses(self) -> Self:
         """The same problem, which asks what ranges lose to anchors as well."""
         other = copy(self)
-        other.lost = LossWalks(self.layout, self._known)
+        other.lost = LossWalks(self.layout, () if self.prior is None else self.prior.keys)
         return other
 
     def part(self, numbers: Unknowns, x: Array, chosen: NDArray[np.bool_], left: HeldQuadratic) -> Self:

@@ -9,7 +9,8 @@ from typing import NamedTuple
 from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.graph.robust import Mixture
 
-ALWAYS = Mixture(outliers=0.0, shift=0.0, spread=1.0)
+NEVER = Mixture(outliers=0.0, shift=0.0, spread=1.0)
+"""Nothing beyond what is usual in sight."""
 
 
 class Usual(NamedTuple):
@@ -54,7 +55,7 @@ USUAL_LOSSES: Mapping[int, UsualLosses] = {
     # A shell, and what it leads waves around, makes ranges longer by some decimetres. What all radios share
     # may be an antenna delay as well, of either sign.
     RANGE: UsualLosses(
-        common=Usual(0.3, ALWAYS, 0.05, Mixture(0.3, 0.0, 0.4)),
+        common=Usual(0.3, NEVER, 0.05, Mixture(0.3, 0.0, 0.4)),
         beside=Usual(0.05, Mixture(0.5, 0.0, 0.3), 0.05, Mixture(0.1, 0.0, 0.3)),
         gained=None,
     ),
