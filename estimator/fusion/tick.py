@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from operator import itemgetter
 
 from estimator.fusion.entering import (
+    carried_bearer,
     corrections,
     late_introductions,
     leaving,
@@ -71,6 +72,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
             displacements += raw_samples.displacements_of(state, reading)
     holds += hear(state, powers)
     displacements = separated_unit.set_aside(state, with_starts(state, displacements))
+    displacements = carried_bearer.set_aside(state, displacements)
     holds.sort(key=EPOCH)
     gone_out = {r.node for r in retired}
     for name, changed_t in state.announced.items():

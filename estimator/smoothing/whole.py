@@ -24,6 +24,7 @@ from estimator.smoothing.problem.newton import METRES_OFF, RESTING, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.told_causes import ask
+from estimator.smoothing.units.turned_at_pauses import turned_at_pauses
 from estimator.smoothing.units.unit_mounting import likeliest_mounting
 from estimator.smoothing.units.unseen_climbs import find_unseen_climb
 from estimator.smoothing.window_extent import spacing_s as usual_s
@@ -123,10 +124,11 @@ def _solved(state: FusionState) -> tuple[Problem, Solution]:
 
 
 def _initial_solution(state: FusionState) -> tuple[Problem, Solution]:
-    """A first solution to learn noise from, with moved nodes, unseen climbs and unit mountings found."""
+    """A first solution to learn noise from, with moved nodes, climbs, turns and mountings found."""
     problem = _problem(state)
     solved = problem.solve(problem.layout.start(), METRES_OFF, resting=LEARNING_RESTING)
     problem, solved = find_unseen_climb(problem, solved, _problem, LEARNING_RESTING)
+    problem, solved = turned_at_pauses(problem, solved, _problem, LEARNING_RESTING)
     problem, solved, _ = likeliest_mounting(problem, solved, _problem, LEARNING_RESTING, -math.inf)
     problem, solved = _freed(problem, solved)
     return _with_moved_nodes(problem, solved, LEARNING_RESTING)

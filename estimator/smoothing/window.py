@@ -6,7 +6,10 @@ no reading inside the window stays linearised at an estimate that has turned out
 0006).
 """
 
+import math
+
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.unreliable_unit import leads_astray
 from estimator.smoothing.images.flip_ambiguity import LIVE, Effort
 from estimator.smoothing.window_extent import SHORTEST_S, WORK, spacing_s, work
 from estimator.smoothing.window_solution import refresh
@@ -25,7 +28,8 @@ SUSPENSE = 0.25
 EXPOSED = 0.5
 """The same where somebody may have gone to an image of where he seems to be."""
 TOLD_S, MORE = 8.0, 0.5
-"""What is new where headings are asked about rarely: so much at least, and this share of what is known."""
+"""What is new where headings and units are asked about rarely: so much at least, and this share of what is
+known."""
 
 
 def solve_if_due(state: FusionState, t: float, rarer: float = 1.0, effort: Effort = LIVE) -> None:
@@ -47,7 +51,9 @@ def solve_if_due(state: FusionState, t: float, rarer: float = 1.0, effort: Effor
     # Where the window is solved rarely, only when there is more to tell.
     told_s = t - state.refreshed_t
     turned = turned and (often or told_s >= max(TOLD_S, MORE * (t - state.begun_t)))
-    if not (state.due or turned or state.bent_m > JOLT_M * rarer):
+    # What has happened to who is led astray is told by what comes soon after.
+    astray = told_s >= max(SOONEST_S, MORE * _astray_s(state, t))
+    if not (state.due or turned or astray or state.bent_m > JOLT_M * rarer):
         if state.suspected:
             periods = SUSPENSE
         elif state.exposed and often:
@@ -60,6 +66,15 @@ def solve_if_due(state: FusionState, t: float, rarer: float = 1.0, effort: Effor
         if waited_s < periods * usual_s(state) or waited_s / period_s(state) < periods:
             return
     solve_now(state, t, effort)
+
+
+def _astray_s(state: FusionState, t: float) -> float:
+    """For how long some unit has led its bearer astray (s); infinite: none does."""
+    if not any(map(leads_astray, state.nodes.values())):
+        state.astray_t = None
+        return math.inf
+    state.astray_t = t if state.astray_t is None else state.astray_t
+    return t - state.astray_t
 
 
 def solve_now(state: FusionState, t: float, effort: Effort = LIVE) -> None:

@@ -12,6 +12,7 @@ from msgspec.structs import replace
 from estimator.fusion import physics
 from estimator.fusion.memory.prior import Prior
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.unreliable_unit import may_have_turned
 from estimator.graph.dense import Array
 from estimator.graph.robust import GOOD
 from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
@@ -25,7 +26,8 @@ from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.readings.sharing import LINK
-from estimator.smoothing.units.turned_frames import may_have_turned, turned_frames
+from estimator.smoothing.units.carried_bearers import carried_bearers
+from estimator.smoothing.units.turned_frames import turned_frames
 from estimator.smoothing.units.unit_mounting import likeliest_mounting
 from estimator.smoothing.units.unseen_climbs import find_unseen_climb, hinted
 from estimator.smoothing.window_extent import LONGEST_S, STEPS_S, restart, spacing_s, trim
@@ -69,7 +71,7 @@ def refresh(state: FusionState, solved_t: float, bent: bool = False, effort: Eff
         return False
     _remember(state, clear, trimmed)
     # Where one is likely to be wrong, look again soon which one.
-    state.suspected = state.suspected or causes.wrong or may_have_turned(state)
+    state.suspected = state.suspected or causes.wrong or any(map(may_have_turned, state.nodes.values()))
     causes.correct(state)
     return True
 
@@ -85,12 +87,13 @@ def _since(state: FusionState) -> float:
 def _likeliest(
     state: FusionState, since: float, solved_t: float, bent: bool, effort: Effort
 ) -> tuple[JudgedImages, list[Mode]]:
-    """The likeliest solution, with climbs, turned frames, mountings and images tried; others by mountings."""
+    """The likeliest solution of all hypotheses, and others by how units are worn."""
     build = partial(_problem, since=since)
     problem = build(state)
     solved = _solved(problem, problem.layout.start(), solved_t, bent)
     if hinted(problem, solved):
         problem, solved = find_unseen_climb(problem, solved, build, RESTING)
+    problem, solved = carried_bearers(problem, solved, build, RESTING)
     problem, solved = turned_frames(problem, solved, build, RESTING)
     problem, solved, mountings = likeliest_mounting(problem, solved, build, RESTING, solved_t)
     return likeliest_image(problem, solved, effort), mountings

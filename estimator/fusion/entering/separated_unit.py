@@ -11,13 +11,12 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion.entering.replaced_unit import change, framed
+from estimator.fusion.entering.unbelieved_steps import unbelieve
 from estimator.fusion.images import doubt_m2
 from estimator.fusion.learned.straight_legs import StraightLegs
-from estimator.fusion.memory.ledger import GIVEN, UNSEEN
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.separated_unit import SeparatedUnit
 from estimator.fusion.memory.state import FusionState
-from estimator.fusion.motion.silence import unheard_m2
 from estimator.graph.dense import Array
 from estimator.inertial.displacement import InertialDisplacement
 from estimator.measurements.displacement import Displacement
@@ -55,15 +54,9 @@ def part(
         turn_rad: ψ of the unit's frame then (rad).
     """
     node = state.nodes[name]
-    steps = state.ledger.table("steps").copy()
-    mine = np.flatnonzero((steps[:, 1] == node.index) & (steps[:, 0] > since_t))
     marks = [(since_t, 0.0, 0.0)]
-    for i in mine.tolist():
-        t, from_t, gone_e, gone_n = steps[i, [0, 2, 3, 4]].tolist()
+    for t, gone_e, gone_n in unbelieve(state, node.index, since_t)[:, [0, 3, 4]].tolist():
         marks.append((t, marks[-1][1] + gone_e, marks[-1][2] + gone_n))
-        wander_m2 = unheard_m2(t - from_t, max(from_t - since_t, 0.0))
-        steps[i, 3:8], steps[i, GIVEN] = (0.0, 0.0, 0.0, wander_m2, 0.1 * wander_m2), UNSEEN
-    state.ledger.replace("steps", steps)
     known = SeparatedUnit(since_t, place_m, turn_rad, tuple(marks))
     state.nodes[name] = replace(node, apart=known, trail=())
     state.due = True

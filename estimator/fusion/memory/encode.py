@@ -54,6 +54,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     sources: tuple[str, ...]
     newest_t: float
     due: bool
+    astray_t: float | None
     suspected: bool
     exposed: bool
     begun_t: float | None
@@ -103,6 +104,7 @@ def record_of(state: FusionState) -> FusionRecord:
         state.sources,
         state.newest_t,
         state.due,
+        state.astray_t,
         state.suspected,
         state.exposed,
         state.begun_t,
@@ -150,6 +152,7 @@ def state_of(record: FusionRecord) -> FusionState:
     for name in COLUMNS:
         state.ledger.replace(name, unpack(record.tables[name]))
     state.newest_t, state.due, state.begun_t = record.newest_t, record.due, record.begun_t
+    state.astray_t = record.astray_t
     state.suspected, state.exposed = record.suspected, record.exposed
     state.entered_t, state.refreshed_t, state.window_t = record.entered_t, record.refreshed_t, record.window_t
     state.calibrations, state.bent_m = record.calibrations, record.bent_m

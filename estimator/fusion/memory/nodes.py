@@ -49,7 +49,9 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         rival: its way by ranges alone, beside the one that its unit tells.
         frame_rad: how the frame of its unit is turned against the one that ψ counts from (rad).
         apart: its unit is not where its radio is.
-        joined_t: when its unit was where its radio is again (s).
+        joined_t: when its unit told again how its radio goes (s).
+        carried_t: its bearer is carried: epoch of the newest report of its unit that it stands (s).
+        standing_asked_t: when it was last asked in vain whether he was carried while it stood (s).
         worn: how its unit is taken to be worn, see `entering.unit_mounting.Mounting`.
         first_heading_rad: heading that its unit reported first, in the unit's frame.
         unit_heading_rad: newest heading that its unit reported, in the unit's frame.
@@ -125,6 +127,8 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     rival: Rival | None = None
     apart: SeparatedUnit | None = None
     joined_t: float = -math.inf
+    carried_t: float | None = None
+    standing_asked_t: float = -math.inf
     worn: tuple[bool, float] = (False, 0.0)
     whole_t: float = math.inf
     missed_s: float = 0.0

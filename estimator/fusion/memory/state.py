@@ -55,6 +55,7 @@ class FusionState:
         level_cost: what a reading has cost at least since it was last asked in vain whether anybody has
             climbed unseen (log likelihood).
         due: the window is to be solved again at once.
+        astray_t: since when some unit leads its bearer astray (s).
         suspected: the window is to be solved again soon: the newest readings disagree with a standing node's
             place, or what was just found has bent what follows.
         exposed: somebody may be followed to an image of where he goes: the window is to be solved again
@@ -103,6 +104,7 @@ class FusionState:
         self.bent_m = 0.0
         self.level_cost = -math.inf
         self.due = False
+        self.astray_t: float | None = None
         self.suspected = False
         self.exposed = True
         self.begun_t: float | None = None

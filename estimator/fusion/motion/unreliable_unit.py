@@ -8,11 +8,12 @@ same: it may be a clock that is off, or a radio that is not on him.
 import math
 from typing import NamedTuple
 
+import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
 from estimator.fusion.learned.noise import LearnedNoise
-from estimator.fusion.learned.rival import MEMORY_S, RARE
+from estimator.fusion.learned.rival import DOUBTED, LED_ASTRAY, MEMORY_S, RARE
 from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -23,6 +24,12 @@ from estimator.graph.dense import Array
 
 CLEAR = 4.0
 """Log odds from which on it is said that ranges contradict a unit: 50 to 1."""
+KNOWN_S = 3.0
+"""So soon after somebody was where his radio was, and nobody knew how he went, ranges tell where he is."""
+AWAY_M, AWAY_SIGMAS = 1.0, 1.5
+"""From when on somebody's rival is elsewhere."""
+LIKELY = 0.2
+"""From which share on it is asked again soon whether a frame has turned."""
 SPOKEN = 0.5
 """So much more than nothing (log odds) speaks against a unit that powers are asked on."""
 
@@ -89,6 +96,44 @@ def answer(state: FusionState, asked: QuestionedUnits, found: RivalUpdate) -> No
             by = "powers" if math.isinf(rival.ranged_t) else "ranges"
             text = f"{by} contradict the unit of {node.node}: it may be worn wrongly, or by another"
             state.say("outlier", node.pose_t, node.node, text)
+            state.due = True
+
+
+def may_have_turned(node: NodeState) -> bool:
+    """Whether the frame of a unit may so well have turned on the way that it is asked again soon."""
+    return sum(other.share for other in node.detours) > LIKELY
+
+
+def leads_astray(node: NodeState) -> bool:
+    """Whether a unit is clearly contradicted, or its frame may well have turned."""
+    if node.mode != "unit":
+        return False
+    return may_have_turned(node) or (node.rival is not None and node.rival.odds > CLEAR)
+
+
+def is_noisy(node: NodeState) -> bool:
+    """Whether a unit has become far noisier than was assumed: its bearer is shown where his rival has him."""
+    return node.walk_factors[0] > LED_ASTRAY
+
+
+def is_contradicted(node: NodeState) -> bool:
+    """Whether readings speak against a unit: for its rival, or it has become far noisier than was assumed."""
+    return is_noisy(node) or (node.rival is not None and node.rival.odds > DOUBTED)
+
+
+def leads_elsewhere(node: NodeState, place_m: Array, t: float) -> bool:
+    """Whether a unit that is contradicted has led its bearer away from where his rival has him.
+
+    Args:
+        node: of the unit.
+        place_m: where it has led him: east, north (m).
+        t: at which epoch (s).
+    """
+    if node.rival is None or not is_contradicted(node):
+        return False
+    there_m, unsure = node.rival.place(t)
+    off = there_m - place_m
+    return float(off @ off) > AWAY_M**2 and float(off @ np.linalg.solve(unsure, off)) > AWAY_SIGMAS**2
 
 
 def _asked(node: NodeState) -> bool:
@@ -97,6 +142,8 @@ def _asked(node: NodeState) -> bool:
         node.turned
         or (node.otherwise and not all(other.by_unit for other in node.otherwise))
         or node.apart is not None
+        or node.carried_t is not None
+        or node.pose_t < node.joined_t + KNOWN_S
         or node.unit_t is None
     ):
         return False

@@ -12,6 +12,7 @@ from numba import njit
 
 from estimator.fusion.entering.modes import CAUCHY, costs_of
 from estimator.fusion.memory.ledger import RANGE, RSSI
+from estimator.fusion.motion.unreliable_unit import leads_astray
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.graph.robust import cauchy_cost
@@ -29,6 +30,8 @@ from estimator.smoothing.changes.relocation import (
     contradicted,
     may_be_kicked,
 )
+from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.keyframes.pauses import paused_until
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 
@@ -43,6 +46,9 @@ DOUBT = 1.5
 """The same of the newest readings before a window is solved again soon."""
 LATEST = 3
 """So many later beginnings of a disagreement are looked at as well."""
+SWITCHED_S, ASKED_S = 30.0, 10.0
+"""For so long a unit that was switched on again may face elsewhere, and nobody knows yet; so long it takes to
+find what has become of one that readings contradict, if it is found."""
 CLEARER = 5.0
 """So much better, in log likelihood, all readings must fit with the one elsewhere than with another one."""
 
@@ -67,6 +73,8 @@ def moved_nodes(
     kinds = rows.pairs[:, 1]
     now = float(problem.layout.grid[-1])
     recent = chosen[(rows.pairs[chosen, 0] > now - recent_s) & (kinds[chosen] <= RSSI)]
+    # Who may be elsewhere himself tells of no breadcrumb where it lies.
+    recent = recent[~np.isin(rows.pairs[recent, 2:4], _astray(problem.layout, now)).any(axis=1)]
     recent = recent[np.argsort(rows.pairs[recent, 0], kind="stable")]
     measured = {float(kind) for kind in (RANGE, RSSI) if (kinds[recent] == kind).any()}
     residual, sigma = solved.linear.residual[recent], rows.sigma[recent]
@@ -129,6 +137,18 @@ def moved_nodes(
     # One that lies elsewhere makes its neighbours seem to, but less far: they are asked again without it.
     farthest = max(found.values(), key=lambda one: one[0].far_m, default=None)
     return [] if farthest is None else [farthest[1]], suspected or len(found) > 1
+
+
+def _astray(layout: Layout, now: float) -> list[int]:
+    """Numbers of those whose units may lead them astray: contradicted lately, or just switched on again."""
+    found, since_t = list[int](), layout.state.astray_t
+    newly = since_t is not None and now < since_t + ASKED_S
+    for walk in layout.walks:
+        node = layout.state.life(walk.number)
+        if walk.way is not None and node.index == walk.number and node.mode == "unit":
+            paused = paused_until(node, walk.way, now - SWITCHED_S, now) is not None
+            found += [walk.number] if paused or (newly and leads_astray(node)) else []
+    return found
 
 
 def _likeliest(drawing: Sequence[tuple[float, MovedNode]]) -> list[MovedNode]:

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.fusion import physics
-from estimator.fusion.learned.rival import DOUBTED, LED_ASTRAY
 from estimator.fusion.memory.ledger import GIVEN, RANGE, UNSEEN
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.motion.silence import SILENT_S
+from estimator.fusion.motion.unreliable_unit import is_contradicted
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.smoothing.changes.short_tracks import Led, RangedUnit
@@ -78,8 +78,7 @@ class RecentRanges:
             index: of the walk.
             node: its node.
         """
-        doubted = node.rival is not None and node.rival.odds > DOUBTED
-        return doubted or node.walk_factors[0] > LED_ASTRAY or self.disagree(index)
+        return is_contradicted(node) or self.disagree(index)
 
     def in_whole_seconds(self, index: int, late_s: float) -> bool:
         """Whether all ranges of a walk's radio are stamped at whole seconds.

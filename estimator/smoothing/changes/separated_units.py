@@ -43,6 +43,8 @@ def find_separated_units(state: FusionState, hearing: RecentRanges, clocked: Col
         node = state.life(walk.number)
         if walk.way is None or node.mode != "unit" or node.index != walk.number or i in clocked:
             continue
+        if node.carried_t is not None:
+            continue
         times, states = layout.times[:, i], layout.states(x, i)
         since_t, until_t = max(hearing.until_t - SPAN_S, node.joined_t), np.inf
         if node.apart is not None:

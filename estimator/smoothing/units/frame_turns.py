@@ -1,4 +1,4 @@
-"""How much likelier powers are if a unit's frame has turned at some moment by some angle, compiled.
+"""How much likelier readings are if a unit's frame has turned at some moment by some angle, compiled.
 
 All moments and angles are looked at in one call. Where all others are, and how his way began, is held; P0 and
 n are found anew for each: a wrong way makes their law flat, and then no power tells of another one.
@@ -80,17 +80,18 @@ def turn_gains(heard: Array, told: ToldWay, early_m2: float, law: Array) -> Arra
     for j in range(len(moments)):
         t = moments[j, T_OF]
         since = np.flatnonzero((heard[:, T] > t) & (heard[:, SINCE_T] <= t))
+        powers = since[heard[since, EXPONENT] > 0.0]
         before = law_before(heard, fall_db, t, usual)
         walk_since(told, j, since, went)
         none_db[:], beside = heard[:, OFF_DB], unusual + told.bent[j]
         least = cost_since(since, none_db, heard[:, VARIANCE], beside)
         foretell(heard, fall_db, moments[j], since, went, 0.0, early_m2, other)
-        by_law = fit_law(since, before, other)
+        by_law = fit_law(powers, before, other)
         if cost_since(since, other.off_db, other.variance, by_law) < least:
             none_db[:], beside = other.off_db, by_law
         for a in range(len(TURNS_RAD)):
             foretell(heard, fall_db, moments[j], since, went, TURNS_RAD[a], early_m2, other)
-            by_law, each[:] = fit_law(since, before, other), 0.0
+            by_law, each[:] = fit_law(powers, before, other), 0.0
             for i in since:
                 # What lies between two angles all powers share: it is as unsure without a turn.
                 none = cost_of(none_db[i], other.variance[i])
@@ -144,8 +145,12 @@ def foretell(
         east = moment[EAST_OF] + cosine * went[i, 0] - sine * went[i, 1] - row[THERE_E]
         north = moment[NORTH_OF] + sine * went[i, 0] + cosine * went[i, 1] - row[THERE_N]
         squared_m2 = east * east + north * north + row[UP] ** 2 + ANTENNA_M**2
+        unsure_m2 = between * (went[i, 0] ** 2 + went[i, 1] ** 2) + early
+        if row[EXPONENT] == 0.0:
+            off_db[i] = row[OFF_DB] + fall_db[i] - np.sqrt(squared_m2)
+            variance[i] = row[VARIANCE] + unsure_m2
+            continue
         other_fall_db[i] = fall_of(squared_m2)
         off_db[i] = row[OFF_DB] + row[EXPONENT] * (other_fall_db[i] - fall_db[i])
-        unsure_m2 = between * (went[i, 0] ** 2 + went[i, 1] ** 2) + early
         slope = DB_PER_NEPER * row[EXPONENT]
         variance[i] = row[VARIANCE] + unsure_m2 * slope * slope / (squared_m2 + unsure_m2)

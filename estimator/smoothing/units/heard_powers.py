@@ -1,4 +1,4 @@
-"""Powers that a walk's radio has heard, as rows of numbers, and what they cost, compiled."""
+"""Powers and ranges that a walk's radio has told, as rows of numbers, and what they cost, compiled."""
 
 import numpy as np
 from numba import njit
@@ -10,7 +10,7 @@ from estimator.measurements.rssi import ANTENNA_M, DB_PER_NEPER
 T, EAST, NORTH, UP, THERE_E, THERE_N, OFF_DB, EXPONENT, VARIANCE, RADIO, SINCE_T = range(11)
 """Of each power: epoch (s); where its bearer is by the solution: east, north, and how much higher than the
 other end (m); the other end: east, north (m); what is left of it (dB); n; variance of its noise (dB²); which
-radio the other end is; from when on that one lies where it is (s)."""
+radio the other end is; from when on that one lies where it is (s). Of a range the same in metres; n is 0."""
 HEARD = 11
 MOST = 4.0
 """What a power costs at most (log likelihood): one in twenty is an outlier, whatever it is off by."""
@@ -40,12 +40,16 @@ def fall_of(squared_m2: float) -> float:
 
 @njit(cache=True, error_model="numpy")
 def falls(heard: Array) -> Array:
-    """By how much n = 1 lets each power fall where its bearer is by the solution, m (dB)."""
+    """By how much n = 1 lets each power fall where its bearer is by the solution, m (dB).
+
+    Of a range its length (m).
+    """
     fall_db = np.empty(len(heard))
     for i in range(len(heard)):
         row = heard[i]
         east, north = row[EAST] - row[THERE_E], row[NORTH] - row[THERE_N]
-        fall_db[i] = fall_of(east * east + north * north + row[UP] ** 2 + ANTENNA_M**2)
+        squared_m2 = east * east + north * north + row[UP] ** 2 + ANTENNA_M**2
+        fall_db[i] = fall_of(squared_m2) if row[EXPONENT] > 0.0 else np.sqrt(squared_m2)
     return fall_db
 
 

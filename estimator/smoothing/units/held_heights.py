@@ -60,7 +60,7 @@ def height_costs(
 ) -> dict[int, float]:
     """What readings of walks cost more over all heights than level, with all else held, in log likelihood.
 
-    As in `marginal_heights`, by Laplace's method; the height at a walk's first keyframe is known.
+    As in `marginal_cost`, by Laplace's method; the height at a walk's first keyframe is known.
 
     Args:
         problem: of a window.

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from numba import njit
 
 from estimator.graph.dense import Array, Indices
-from estimator.smoothing.units.heard_powers import MOST, OFF_DB, SINCE_T, VARIANCE, T, cost_of
+from estimator.smoothing.units.heard_powers import EXPONENT, MOST, OFF_DB, SINCE_T, VARIANCE, T, cost_of
 
 
 class PowerLaw(NamedTuple):
@@ -49,7 +49,7 @@ def law_before(heard: Array, fall_db: Array, t: float, usual: PowerLaw) -> Power
     for i in range(len(heard)):
         row = heard[i]
         changed = row[T] > t and row[SINCE_T] <= t
-        if not changed and cost_of(row[OFF_DB], row[VARIANCE]) < MOST:
+        if row[EXPONENT] > 0.0 and not changed and cost_of(row[OFF_DB], row[VARIANCE]) < MOST:
             weight = 1.0 / row[VARIANCE]
             pp, pn, nn = pp + weight, pn - weight * fall_db[i], nn + weight * fall_db[i] ** 2
             p, n = p + weight * row[OFF_DB], n - weight * fall_db[i] * row[OFF_DB]

@@ -7,7 +7,7 @@ import numpy as np
 
 from estimator.fusion import physics
 from estimator.fusion.images import ALWAYS, Alternative, turned_about
-from estimator.fusion.memory.ledger import RSSI
+from estimator.fusion.memory.ledger import RANGE, RSSI
 from estimator.graph.dense import Array, Indices
 from estimator.smoothing.keyframes.displacement_sums import Way
 from estimator.smoothing.keyframes.layout import Layout, Walk
@@ -42,6 +42,8 @@ LEAST = 0.02
 SPEED_MPS = 1.0
 EARLY_M2 = 4.0 * (SPEED_MPS * EVERY_S) ** 2 / 12.0
 EPSILON_S = 1e-3
+WALLS_M2 = 1.0
+"""What ranges are unsure by because of walls: solutions take no account of these before they rest (m²)."""
 STAIR_M = 0.5 * physics.FLOOR_M
 """Who is higher or lower than a radio by more is on a stair, or beyond a floor: that is in the way."""
 
@@ -132,13 +134,15 @@ def _power_laws(layout: Layout, x: Array) -> tuple[Array, Array]:
 def _heard(
     problem: Problem, solved: Solution, walk: Walk, since_t: float, variance: Array, exponent: Array
 ) -> Array:
-    """The powers of a walk since an epoch, as `turn_gains` takes them, m × `HEARD`."""
+    """The powers and ranges of a walk since an epoch, as `turn_gains` takes them, m × `HEARD`."""
     state, rows, pairs = problem.layout.state, problem.rows, problem.rows.pairs
     first = pairs[:, 2] == walk.number
-    mine = (first | (pairs[:, 3] == walk.number)) & (pairs[:, 1] == RSSI) & (variance < np.inf)
+    mine = (first | (pairs[:, 3] == walk.number)) & (pairs[:, 1] <= RSSI) & (variance < np.inf)
     chosen = np.flatnonzero(mine & (pairs[:, 0] > since_t))
     a_m, b_m = rows.places(solved.x)
-    chosen = chosen[np.abs(a_m[chosen, 2] - b_m[chosen, 2]) < STAIR_M]
+    ranged = pairs[chosen, 1] == RANGE
+    chosen = chosen[ranged | (np.abs(a_m[chosen, 2] - b_m[chosen, 2]) < STAIR_M)]
+    ranged = pairs[chosen, 1] == RANGE
     is_first, ends_m = first[chosen], (a_m[chosen], b_m[chosen])
     here_m, there_m = np.where(is_first[:, None], ends_m, ends_m[::-1])
     other = np.where(is_first, pairs[chosen, 3], pairs[chosen, 2]).astype(np.intp)
@@ -150,7 +154,8 @@ def _heard(
     heard[:, [EAST, NORTH]], heard[:, UP] = here_m[:, :2], here_m[:, 2] - there_m[:, 2]
     heard[:, [THERE_E, THERE_N]] = there_m[:, :2]
     heard[:, OFF_DB], heard[:, VARIANCE] = solved.linear.residual[chosen], variance[chosen]
-    heard[:, EXPONENT] = exponent[pairs[chosen, 6].astype(np.intp)]
+    heard[ranged, VARIANCE] += WALLS_M2
+    heard[:, EXPONENT] = np.where(ranged, 0.0, exponent[pairs[chosen, 6].astype(np.intp)])
     heard[:, RADIO], heard[:, SINCE_T] = np.unique(other, return_inverse=True)[1], lies_t[other]
     return heard
 

@@ -10,16 +10,17 @@ from estimator.fusion.images import turned_about
 from estimator.fusion.memory.ledger import CLAIMED
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
-from estimator.graph.robust import mixture_cost
 from estimator.inertial.levelling import ANYWHERE_RAD
 from estimator.smoothing.images.heading_images import drops_along
-from estimator.smoothing.keyframes.layout import Walk
+from estimator.smoothing.keyframes.layout import Layout, own_rows
 from estimator.smoothing.keyframes.walks import HEADING
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.units.agreeing_ranges import ranges_agree
 from estimator.smoothing.units.frame_turns import KICKED
 from estimator.smoothing.units.mounting_hypotheses import unlearned
 from estimator.smoothing.units.suspected_turns import EPSILON_S, Turn
+from estimator.smoothing.units.told_most import told_most
 
 TAKEN, LEAST_RAD = 9.0, 0.5
 """Log likelihood of both solutions from which on a turn is taken: of those that fit best, among all moments
@@ -43,7 +44,7 @@ def take_turn(
     plain = unlearned(layout.state)
     other = plain.copy()
     t = float(layout.times[turn.keyframe, turn.of])
-    _let_turn(other, walk.number, t, turn.across2)
+    let_turn(other, walk.number, t, turn.across2)
     as_it_is, turned = build(plain), build(other)
     # A turn says nothing of heights: both cost by the same floors.
     as_it_is.rows.floors = turned.rows.floors = as_it_is.rows.through(solved.x)
@@ -52,12 +53,14 @@ def take_turn(
         found = turned.solve(_start(as_it_is, known.x, turn), SLACKS_M, resting=resting)
     except ValueError:
         return None
-    gain = known.cost - found.cost - max(_most(as_it_is, known, turned, found, walk) - KICKED, 0.0)
-    before, after = layout.states(found.x, turn.of)[turn.keyframe : turn.keyframe + 2, HEADING].tolist()
-    if gain < TAKEN or abs(after - before) < LEAST_RAD:
+    gain = known.cost - found.cost - max(told_most(as_it_is, known, turned, found, walk) - KICKED, 0.0)
+    headings = layout.states(found.x, turn.of)[:, HEADING]
+    before, after = float(headings[_last_told(layout, turn)]), float(headings[turn.keyframe + 1])
+    agree = ranges_agree(turned, found, walk.number, t)
+    if gain < TAKEN or abs(after - before) < LEAST_RAD or not agree:
         return None
     state = layout.state
-    _let_turn(state, walk.number, t, turn.across2)
+    let_turn(state, walk.number, t, turn.across2)
     # What was learned a wrong way has made.
     node, state.noise = state.life(walk.number), {}
     state.keep(replace(node, walk_factors=(1.0, 1.0), rival=None, detours=(), power_cost=math.inf))
@@ -70,18 +73,13 @@ def take_turn(
     return anew, anew.solve(found.x, resting=resting)
 
 
-def _most(one: Problem, as_one: Solution, other: Problem, as_other: Solution, walk: Walk) -> float:
-    """What the radio tells that tells most for one solution over another, of those a walk's radio hears."""
-    m, pairs = len(one.rows.pairs), one.rows.pairs
-    costs = [
-        mixture_cost(found.linear.residual[:m], rows.sigma[:m], *rows.noise[:m].T)
-        for rows, found in ((one.rows, as_one), (other.rows, as_other))
-    ]
-    told = np.zeros(len(one.layout.state.owners))
-    for own, there in ((2, 3), (3, 2)):
-        mine = pairs[:, own] == walk.number
-        np.add.at(told, pairs[mine, there].astype(np.intp), (costs[0] - costs[1])[mine])
-    return float(told.max())
+def _last_told(layout: Layout, turn: Turn) -> int:
+    """The last keyframe before a turn by which its unit had told all of its way: it may have turned since."""
+    walk, t = layout.walks[turn.of], float(layout.times[turn.keyframe, turn.of])
+    ends = own_rows(layout.state.ledger.table("steps"), walk.number)[:, 0]
+    told_t = ends[ends <= t].max(initial=-math.inf)
+    times = layout.times[walk.first : turn.keyframe + 1, turn.of]
+    return walk.first + max(int(np.searchsorted(times, told_t, side="right")) - 1, 0)
 
 
 def _start(problem: Problem, x: Array, turn: Turn) -> Array:
@@ -96,7 +94,14 @@ def _start(problem: Problem, x: Array, turn: Turn) -> Array:
     return there
 
 
-def _let_turn(state: FusionState, number: int, t: float, across2: float) -> None:
-    """Let a unit's frame turn by anything right after an epoch (s): a step without displacement or time."""
+def let_turn(state: FusionState, number: int, t: float, across2: float) -> None:
+    """Let a unit's frame turn by anything right after an epoch: a step without displacement or time.
+
+    Args:
+        state: the fusion, whose ledger takes it.
+        number: of the unit's node in the ledger.
+        t: the epoch (s).
+        across2: variance of where its bearer is by when exactly that was (m²).
+    """
     at_t, rest = t + EPSILON_S, (0.0, 0.0, 0.0, across2, 0.0, ANYWHERE_RAD**2, 0.0, 0.0, CLAIMED)
     state.ledger.add("steps", at_t, number, at_t, *rest)

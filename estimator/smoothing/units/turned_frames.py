@@ -2,7 +2,9 @@
 
 By powers alone a window bends his way a little, finds them noisier, and shows him elsewhere as sure. So where
 they cost more than when it was last asked in vain, all moments and angles of a turn are looked at; where one
-is likely, the window is solved with it. Until that is taken, covariances hold where he would be by it.
+is likely, the window is solved with it. Until that is taken, covariances hold where he would be by it. Who is
+ranged is asked about where his unit is contradicted: good ranges are outliers of his way, and breadcrumbs
+would seem to have been kicked.
 """
 
 from collections.abc import Callable
@@ -14,9 +16,11 @@ from estimator.fusion import physics
 from estimator.fusion.memory.ledger import RSSI
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
+from estimator.fusion.motion.unreliable_unit import is_contradicted, is_noisy, leads_elsewhere
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.displacement_sums import Way
-from estimator.smoothing.keyframes.layout import Walk
+from estimator.smoothing.keyframes.layout import Layout, Walk
+from estimator.smoothing.keyframes.pauses import paused_until
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.units.heard_powers import power_costs
@@ -25,9 +29,6 @@ from estimator.smoothing.units.taken_turns import take_turn
 
 HINT, LATELY_S = 4.0, 20.0
 """Powers of so long that cost so much more (log likelihood) than they did hint at a turn."""
-PAUSE_S = 3.0
-LIKELY = 0.2
-"""From which share on it is asked again soon."""
 SHORTEST = 4
 """Keyframes that a walk has at least."""
 
@@ -43,50 +44,71 @@ def turned_frames(
         build: makes the same problem of another state.
         resting: see `Problem.solve`.
     """
-    state, layout = problem.layout.state, problem.layout
-    units = _asked(problem)
+    state, layout, now = problem.layout.state, problem.layout, float(problem.layout.grid[-1])
+    by_powers = bool((problem.rows.pairs[:, 1] == RSSI).any()) and not _is_open(problem)
+    units = _asked(problem, by_powers)
     asked = {layout.walks[i].number for i in units}
     for node in list(state.nodes.values()):
         if node.detours and node.index not in asked:
             state.keep(replace(node, detours=()))
     if not units:
         return problem, solved
-    now, variance = float(layout.grid[-1]), _assumed_variance(problem, solved)
+    variance = _assumed_variance(problem, solved)
     numbers = np.array([float(layout.walks[i].number) for i in units])
     off_db = solved.linear.residual[: len(variance)]
     costs = power_costs(problem.rows.pairs, off_db, variance, now - LATELY_S, numbers)
-    for (i, way), (cost, count, ranged) in zip(units.items(), costs.tolist(), strict=True):
-        node = state.life(layout.walks[i].number)
-        if ranged or not count:
+    for (i, (way, paused_t)), (cost, count, ranged) in zip(units.items(), costs.tolist(), strict=True):
+        node, each = state.life(layout.walks[i].number), cost / max(count, 1.0)
+        if ranged:
+            # Where else he may be his rival tells. How his unit is worn (decision 0060) is asked before, and
+            # whether it is on him (0055).
             state.keep(replace(node, detours=()))
-            continue
-        each, paused_t = cost / count, _pause(node, way, now)
-        if not (node.detours or paused_t is not None or (each - node.power_cost) * count > HINT):
-            state.keep(replace(node, power_cost=min(node.power_cost, each)))
+            settled = way.begin_t < now - LOOK_S
+            hinted = settled and (paused_t is not None or _elsewhere(layout, solved, i))
+        elif not count or not by_powers:
+            state.keep(replace(node, detours=()))
+            hinted = False
+        else:
+            hinted = bool(node.detours) or paused_t is not None or (each - node.power_cost) * count > HINT
+            if not hinted:
+                state.keep(replace(node, power_cost=min(node.power_cost, each)))
+        if not hinted:
             continue
         turn, detours = suspected_turn(problem, solved, i, way, variance, paused_t)
-        state.keep(replace(node, detours=detours, power_cost=node.power_cost if detours else each))
+        if not ranged:
+            state.keep(replace(node, detours=detours, power_cost=node.power_cost if detours else each))
         taken = None if turn is None else take_turn(problem, solved, turn, build, resting)
         if taken is not None:
             return taken
     return problem, solved
 
 
-def may_have_turned(state: FusionState) -> bool:
-    """Whether anybody's unit may so well have turned that it is asked again soon."""
-    return any(sum(other.share for other in node.detours) > LIKELY for node in state.nodes.values())
+def _elsewhere(layout: Layout, solved: Solution, index: int) -> bool:
+    """Whether a unit has become far noisier, or has led its bearer away from his rival."""
+    walk = layout.walks[index]
+    if is_noisy(layout.state.life(walk.number)):
+        return True
+    shown_m, t = layout.states(solved.x, index)[walk.last, :2], float(layout.times[walk.last, index])
+    return leads_elsewhere(layout.state.life(walk.number), shown_m, t)
 
 
-def _asked(problem: Problem) -> dict[int, Way]:
-    """Units of which it is asked whether they have turned, by index of the walk: their ways."""
-    pairs, layout = problem.rows.pairs, problem.layout
-    if not (pairs[:, 1] == RSSI).any() or _is_open(problem):
-        return {}
-    return {
-        i: walk.way
-        for i, walk in enumerate(layout.walks)
-        if walk.way is not None and _askable(layout.state.life(walk.number), walk)
-    }
+def _asked(problem: Problem, by_powers: bool) -> dict[int, tuple[Way, float | None]]:
+    """Units of which it is asked whether they have turned, by index of the walk: their ways, and pauses (s).
+
+    Args:
+        problem: of a window.
+        by_powers: those are asked about whom powers alone tell of; else none that nothing speaks against.
+    """
+    layout, found = problem.layout, dict[int, tuple[Way, float | None]]()
+    now = float(layout.grid[-1])
+    for i, walk in enumerate(layout.walks):
+        node = layout.state.life(walk.number)
+        if walk.way is None or not _askable(node, walk):
+            continue
+        paused_t = paused_until(node, walk.way, now - LOOK_S, now)
+        if by_powers or paused_t is not None or is_contradicted(node):
+            found[i] = walk.way, paused_t
+    return found
 
 
 def _assumed_variance(problem: Problem, solved: Solution) -> Array:
@@ -106,8 +128,9 @@ def _askable(node: NodeState, walk: Walk) -> bool:
     if node.index != walk.number or walk.last - walk.first < SHORTEST:
         return False
     worn = any(other.by_unit for other in node.otherwise)
-    settled = not (worn or node.turned) and node.changed is None and node.apart is None
-    return node.mode == "unit" and settled
+    settled = not (worn or node.turned) and node.changed is None
+    led = node.mode == "unit" and node.apart is None and node.carried_t is None
+    return settled and led
 
 
 def _is_open(problem: Problem) -> bool:
@@ -118,12 +141,3 @@ def _is_open(problem: Problem) -> bool:
     known = () if problem.prior is None else problem.prior.keys
     droppers = set(problem.layout.state.ledger.table("drops")[:, 2].tolist())
     return any(("walk", w.number) not in known and w.number in droppers for w in problem.layout.walks)
-
-
-def _pause(node: NodeState, way: Way, now: float) -> float | None:
-    """When a unit began to tell again that had told nothing for a while (s), if it did lately."""
-    whole_t = node.whole_t
-    if not max(now - LOOK_S, way.begin_t + 2.0 * PAUSE_S) < whole_t < now:
-        return None
-    before, until = way.unseen_s(np.array([whole_t - 2.0 * PAUSE_S, whole_t])).tolist()
-    return whole_t if until - before > PAUSE_S else None

@@ -219,6 +219,8 @@ def _odds(node: NodeState) -> float:
 def _askable(node: NodeState, walk: Walk) -> bool:
     if walk.way is None or node.index != walk.number or node.mode != "unit" or node.raw:
         return False
+    if node.carried_t is not None:
+        return False
     return node.apart is None and node.frame_rad == 0.0 and node.changed is None and node.way_m > GONE_M
 
 

@@ -20,7 +20,7 @@ from estimator.smoothing.keyframes.walks import FLOOR, VARIANCES
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.units.held_heights import UP, height_costs
-from estimator.smoothing.units.marginal_heights import MarginalCost, marginal_cost
+from estimator.smoothing.units.marginal_cost import MarginalCost, marginal_cost
 
 OFF_PLANE_M = 0.3
 """Far enough for distances to lead on, too little for them to tell."""

@@ -1,4 +1,4 @@
-"""Units that count from another heading than they did, whose bearers only powers tell of (decision 0087)."""
+"""Units that count from another heading than they did (decisions 0087 and 0126)."""
 
 import math
 from collections.abc import Callable
@@ -9,14 +9,17 @@ import pytest
 from estimator.graph.dense import Array
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
+from estimator.measurements.drop import Drop
 from estimator.measurements.node import Node
+from estimator.measurements.range import Range
 from estimator.measurements.rssi import Rssi
 from estimator.simulate import scenario
+from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import SURE, outside
 from tests.estimator.trackers.entry import shown
 
-SECONDS, TURNED_S, ASKED_S = 150, 60, 90
+SECONDS, TURNED_S, ASKED_S, LATE_S = 150, 60, 90, 115
 ANCHORS_M = {"a0": (-16.0, -14.0), "a1": (16.0, -14.0), "a2": (16.0, 14.0), "a3": (-16.0, 14.0)}
 STAYS_M = 4.0
 Frame = Callable[[int], float]
@@ -31,13 +34,22 @@ def on_again(second: int) -> float:
     return 2.0 if second > TURNED_S else 0.0
 
 
-def walk(frame: Frame, seed: int, off_s: int = 0) -> tuple[list[AnyReading], Array]:
+def late(second: int) -> float:
+    """The same when a window knows well what it faced before (rad)."""
+    return 2.0 if second > LATE_S else 0.0
+
+
+def walk(
+    frame: Frame, seed: int, off_s: int = 0, off_from_s: int = TURNED_S, ranged: bool = False
+) -> tuple[list[AnyReading], Array]:
     """He walks from goal to goal among four radios, whose powers share half of their errors while he is near.
 
     Args:
         frame: how his unit's frame is turned, second by second (rad).
         seed: of chance.
-        off_s: for how long it tells nothing from `TURNED_S` on (s).
+        off_s: for how long it tells nothing (s).
+        off_from_s: since when (s).
+        ranged: he ranges to those four every other second, and to what he has dropped.
     """
     chance = np.random.default_rng(seed)
     at = goal = chance.uniform(-5.0, 5.0, 2)
@@ -53,7 +65,7 @@ def walk(frame: Frame, seed: int, off_s: int = 0) -> tuple[list[AnyReading], Arr
         way.append(at)
         cosine, sine = math.cos(psi_rad + frame(second)), math.sin(psi_rad + frame(second))
         told_m = np.array([[cosine, sine], [-sine, cosine]]) @ step_m + chance.normal(0.0, 0.03, 2)
-        if not TURNED_S < second <= TURNED_S + off_s:
+        if not off_from_s < second <= off_from_s + off_s:
             delta_m = (*told_m.tolist(), 0.0)
             readings.append(Displacement(t=float(second), from_t=second - 1.0, node="ff1", delta_m=delta_m))
         kept = math.exp(-float(np.hypot(*step_m)) / STAYS_M)
@@ -62,7 +74,25 @@ def walk(frame: Frame, seed: int, off_s: int = 0) -> tuple[list[AnyReading], Arr
             beside_db[name] = kept * beside_db[name] + math.sqrt(1.0 - kept**2) * chance.normal(0.0, 4.0)
             dbm = -42.0 - 25.0 * math.log10(off_m) + beside_db[name] + chance.normal(0.0, 4.0)
             readings.append(Rssi(t=float(second), a="ff1", b=name, dbm=dbm))
+        if ranged:
+            readings += _ranged(second, np.array(way), chance)
     return readings, np.array(way)
+
+
+def _ranged(second: int, way: Array, chance: np.random.Generator) -> list[AnyReading]:
+    """What he drops and ranges to in a second."""
+    if second % 12 == 0 and second < TURNED_S:
+        return [Drop(t=float(second), node=f"b{second}", by="ff1")]
+    if second % 2:
+        return []
+    radios = ANCHORS_M | {f"b{s}": (way[s, 0], way[s, 1]) for s in range(12, min(second, TURNED_S), 12)}
+    far_m = {
+        name: float(np.hypot(*(way[-1] - place)) + chance.normal(0.0, 0.1)) for name, place in radios.items()
+    }
+    return [
+        Range(t=float(second), a="ff1", b=name, range_m=max(off_m, 0.0), technology="uwb")
+        for name, off_m in far_m.items()
+    ]
 
 
 def _node(name: str, place_m: tuple[float, float] | list[float]) -> Node:
@@ -96,6 +126,30 @@ def test_who_switches_his_unit_off_and_on_is_not_shown_elsewhere_as_sure_for_lon
     wrong, told = zip(*(followed(*walk(on_again, seed, off_s)) for seed in (0, 2, 4)), strict=True)
     assert sum(wrong) < at_most_s
     assert told == (1, 1, 1)
+
+
+@pytest.mark.parametrize("off_s", [0, 8])
+def test_no_breadcrumb_seems_to_be_kicked_because_who_is_ranged_has_turned(off_s: int) -> None:
+    """Four breadcrumbs of one walk did, and he was shown 24 m off."""
+    for seed in (1, 2, 5):
+        readings, way = walk(late, seed, off_s, LATE_S, ranged=True)
+        tracker, texts = KirchhoffTracker(), list[str]()
+        for second in range(SECONDS + 1):
+            tracker.fold([r for r in readings if r.t == second])
+            texts += [notice.text for notice in tracker.take_notices()]
+            found = shown(tracker)
+            assert outside(found.position_m, found.covariance_m2, way[second]) < SURE
+        assert not any("kicked" in text for text in texts)
+        assert any("faces elsewhere" in text or "different ways" in text for text in texts)
+
+
+@pytest.mark.parametrize("off_s", [0, 8])
+def test_looking_back_who_is_ranged_is_where_he_was_though_his_unit_has_turned(off_s: int) -> None:
+    """He was surely elsewhere for 24 to 35 seconds of each walk."""
+    for seed in (1, 2, 5):
+        readings, way = walk(late, seed, off_s, LATE_S, ranged=True)
+        track = BatchSmoother().smooth(readings)["ff1"]
+        assert sum(outside(p.position_m, p.covariance_m2, way[int(p.t)]) > SURE for p in track) < 3
 
 
 @pytest.mark.parametrize("off_s", [0, 8])

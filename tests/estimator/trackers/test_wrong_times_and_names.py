@@ -210,15 +210,17 @@ def test_ranges_that_are_measured_at_whole_seconds_stay_there(
 
 
 @pytest.mark.parametrize(
-    ("radios", "units"), [(left, as_they_are), (as_they_are, left)], ids=["a radio is left", "a unit is left"]
+    ("radios", "units", "said"),
+    [(left, as_they_are, "different ways"), (as_they_are, left, "while the unit of ff0 stands")],
+    ids=["a radio is left", "a unit is left"],
 )
 def test_who_has_left_his_radio_or_unit_is_told_and_not_surely_elsewhere(
-    radios: Carried, units: Carried
+    radios: Carried, units: Carried, said: str
 ) -> None:
     """Sure of the one or the other, he was shown up to thirty metres off until the end."""
     for seed in SEEDS:
         found = followed(world(seed, radios=radios, units=units))
-        assert found.said("different ways") == {"ff0"}
+        assert found.said(said) == {"ff0"}
         assert found.wrong["ff0"] < NOTICED_S
         assert found.wrong["ff1"] < 3
 

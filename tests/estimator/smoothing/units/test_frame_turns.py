@@ -10,7 +10,7 @@ from estimator.smoothing.units.frame_turns import KICKED, TURNS_RAD, ToldWay, tu
 from estimator.smoothing.units.heard_powers import HEARD
 
 ANCHORS_M = np.array([(-15.0, -15.0), (15.0, -15.0), (15.0, 15.0), (-15.0, 15.0)])
-TURNED_S, SECONDS, SIGMA_DB, EXPONENT = 20.0, 60, 6.0, 2.2
+TURNED_S, SECONDS, SIGMA_DB, SIGMA_M, EXPONENT = 20.0, 60, 6.0, 1.0, 2.2
 MOMENTS_S = np.arange(4.0, SECONDS, 8.0)
 USUAL = np.array([[0.0, 10.0], [0.0, 0.4]])
 
@@ -28,8 +28,16 @@ def power_db(places_m: Array, anchor_m: Array, exponent: float = EXPONENT) -> Ar
     return np.asarray(-5.0 * exponent * np.log10(squared_m2))
 
 
+def length_m(places_m: Array, anchor_m: Array) -> Array:
+    return np.asarray(np.hypot(*(places_m - anchor_m).T))
+
+
 def asked(
-    turned_rad: float, kicked: bool = False, exponent: float = EXPONENT, begin_t: float = 0.0
+    turned_rad: float,
+    kicked: bool = False,
+    exponent: float = EXPONENT,
+    begin_t: float = 0.0,
+    ranged: bool = False,
 ) -> tuple[Array, Array]:
     """Gains, and moments, where a solution follows the unit; all radios tell of a turn, or one was kicked."""
     told_m, true_m = legs(0.0), legs(0.0 if kicked else turned_rad)
@@ -41,6 +49,9 @@ def asked(
         rows = np.zeros((SECONDS, HEARD))
         rows[:, 0], rows[:, 1:3], rows[:, 4:6], rows[:, 6] = t, told_m[1:], at_m, off_db
         rows[:, 7], rows[:, 8], rows[:, 9], rows[:, 10] = exponent, SIGMA_DB**2, radio, -np.inf
+        if ranged:
+            rows[:, 6] = length_m(true_m[1:], there_m) - length_m(told_m[1:], at_m)
+            rows[:, 7], rows[:, 8] = 0.0, SIGMA_M**2
         heard.append(rows)
     step_m = np.diff(told_m, axis=0)
     moment_m = step_m * (t - 0.5 - begin_t)[:, None]
@@ -59,6 +70,19 @@ def test_the_angle_and_the_moment_of_a_turn_are_the_likeliest(angle: int) -> Non
     assert abs(moments_s[moment] - TURNED_S) <= 8.0
     assert by == angle
     assert gains.max() > 10.0
+
+
+@pytest.mark.parametrize("angle", [0, 3, 8])
+def test_ranges_tell_of_a_turn_as_powers_do_and_more_clearly(angle: int) -> None:
+    gains, moments_s = asked(float(TURNS_RAD[angle]), ranged=True)
+    moment, by = np.unravel_index(gains.argmax(), gains.shape)
+    assert abs(moments_s[moment] - TURNED_S) <= 8.0
+    assert by == angle
+    assert gains.max() > asked(float(TURNS_RAD[angle]))[0].max()
+
+
+def test_ranges_of_a_radio_that_was_kicked_speak_for_a_turn_by_no_more_than_powers() -> None:
+    assert asked(0.0, kicked=True, ranged=True)[0].max() < KICKED
 
 
 def test_nothing_speaks_for_a_turn_where_all_was_heard_as_foretold() -> None:

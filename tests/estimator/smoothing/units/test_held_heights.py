@@ -19,9 +19,9 @@ from estimator.smoothing.problem.newton import RESTING, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.units import held_heights, unseen_climbs
 from estimator.smoothing.units.held_heights import UP, height_costs
-from estimator.smoothing.units.marginal_heights import MarginalCost
+from estimator.smoothing.units.marginal_cost import MarginalCost
 from estimator.smoothing.units.unseen_climbs import OFF_PLANE_M, find_unseen_climb
-from tests.estimator.smoothing.units.test_marginal_heights import ANCHORS_M, CLIMB_M2, both, crew
+from tests.estimator.smoothing.units.test_marginal_cost import ANCHORS_M, CLIMB_M2, both, crew
 from tests.estimator.smoothing.windows import difference, fused, problem_of
 
 

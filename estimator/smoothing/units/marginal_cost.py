@@ -1,11 +1,12 @@
-"""How likely readings are with heights that nobody measured, whatever these heights are.
+"""How likely readings are with ways that nobody measured, whatever these ways are.
 
-What costs least says only how well the best heights fit. Among powers and ranges that scatter there always
-are some that fit better than none, and the more people walk for the longer, the better they fit. So what is
-compared is the likelihood of the readings over all heights, log p(z) by Laplace's method (MacKay 1992): of as
-many heights as are free, few fit.
+What costs least says only how well the best way fits. Among powers and ranges that scatter there always are
+heights that fit better than none, and detours, and the more people walk for the longer, the better they fit.
+So what is compared is the likelihood of the readings over all ways, log p(z) by Laplace's method (MacKay
+1992): of as many ways as are free, few fit.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -29,15 +30,16 @@ class MarginalCost(NamedTuple):
     each: Array
 
 
-def marginal_cost(problem: Problem, solved: Solution) -> MarginalCost:
+def marginal_cost(problem: Problem, solved: Solution, free: Sequence[int] = (UP,)) -> MarginalCost:
     """What a solution costs over all that it might have been instead.
 
-    It is to be compared with others of the same readings and keyframes, whose steps are as noisy but for how
-    unsure their heights are.
+    It is to be compared with others of the same readings and keyframes, whose steps are as noisy but for some
+    numbers of a state.
 
     Args:
         problem: of a window.
         solved: its solution, whose chain is eliminated here.
+        free: these numbers: heights.
     """
     rows, walks = problem.rows, problem.layout.walks
     solved.chain.reduce()
@@ -46,5 +48,5 @@ def marginal_cost(problem: Problem, solved: Solution) -> MarginalCost:
     for i, (walk, motion) in enumerate(zip(walks, solved.motions, strict=True)):
         own[i] = costs[rows.of([walk.number])].sum() + misfit(motion)
         if walk.way is not None:
-            walked[i] += np.log(motion.noise[:, UP, UP]).sum()
+            walked[i] += sum(np.log(motion.noise[:, c, c]).sum() for c in free)
     return MarginalCost(solved.cost + 0.5 * (border + float(walked.sum())), own + 0.5 * walked)

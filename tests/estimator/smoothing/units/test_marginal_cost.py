@@ -11,7 +11,7 @@ from estimator.measurements.rssi import Rssi
 from estimator.smoothing.problem.newton import RESTING, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.units.held_heights import UP
-from estimator.smoothing.units.marginal_heights import marginal_cost
+from estimator.smoothing.units.marginal_cost import marginal_cost
 from estimator.smoothing.units.unseen_climbs import find_unseen_climb
 from tests.estimator.smoothing.windows import entered, fused, problem_of, unlikelihood
 
