@@ -5,13 +5,11 @@ from collections.abc import Sequence
 from operator import itemgetter
 
 from estimator.fusion.entering import (
-    carried_bearer,
     corrections,
     late_introductions,
     leaving,
     reentry,
     replaced_unit,
-    separated_unit,
 )
 from estimator.fusion.holding import EPOCH, HELD, covered, hold, names_of, parts_of
 from estimator.fusion.memory.state import AnyHeld, FusionState
@@ -22,6 +20,7 @@ from estimator.fusion.readings.clocks import retimed
 from estimator.fusion.readings.copies import without_copies
 from estimator.fusion.readings.crossings import hear
 from estimator.fusion.readings.displacements import move_units, returns
+from estimator.fusion.readings.leading_units import leading
 from estimator.fusion.readings.unstated_starts import with_starts
 from estimator.fusion.report import estimate_of
 from estimator.fusion.rows.rows import Single
@@ -71,8 +70,7 @@ def fold_tick(state: FusionState, until_t: float, readings: Sequence[AnyFolded])
         elif isinstance(reading, Samples):
             displacements += raw_samples.displacements_of(state, reading)
     holds += hear(state, powers)
-    displacements = separated_unit.set_aside(state, with_starts(state, displacements))
-    displacements = carried_bearer.set_aside(state, displacements)
+    displacements = leading(state, with_starts(state, displacements))
     holds.sort(key=EPOCH)
     gone_out = {r.node for r in retired}
     for name, changed_t in state.announced.items():

@@ -6,42 +6,36 @@ steps.
 """
 
 import math
-from collections.abc import Sequence
 
 from msgspec.structs import replace
 
 from estimator.fusion.entering.unbelieved_steps import leave_behind, unbelieve
 from estimator.fusion.learned.straight_legs import StraightLegs
+from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
-from estimator.inertial.displacement import InertialDisplacement
 from estimator.measurements.displacement import Displacement
 
 HARDLY_MPS = 0.1
 """A unit that tells less stands, but for the jolts of being carried; who crawls gets farther."""
 
 
-def set_aside(state: FusionState, readings: Sequence[Displacement]) -> list[Displacement]:
-    """The displacements that move somebody: not those of units that stand while their bearers are carried.
+def first_step(
+    state: FusionState, node: NodeState, stood_t: float, reading: Displacement
+) -> Displacement | None:
+    """The displacement with which somebody who was carried goes on by himself; None: his unit still stands.
 
     Args:
         state: the fusion.
-        readings: in order of epoch.
+        node: of the unit.
+        stood_t: epoch of the newest report that it stands (s).
+        reading: what it has told.
     """
-    moving: list[Displacement] = []
-    for reading in readings:
-        node = state.nodes.get(reading.node)
-        if node is None or node.carried_t is None or node.mode != "unit":
-            moving.append(reading)
-            continue
-        since_t = node.carried_t if reading.from_t is None else reading.from_t
-        if math.hypot(*reading.delta_m) < HARDLY_MPS * (reading.t - since_t):
-            state.nodes[node.node] = replace(node, carried_t=max(node.carried_t, reading.t))
-            if not isinstance(reading, InertialDisplacement):
-                state.count("not_fused")
-        else:
-            state.nodes[node.node] = replace(node, carried_t=None, joined_t=since_t)
-            moving.append(reading if reading.from_t is not None else replace(reading, from_t=since_t))
-    return moving
+    since_t = stood_t if reading.from_t is None else reading.from_t
+    if math.hypot(*reading.delta_m) < HARDLY_MPS * (reading.t - since_t):
+        state.nodes[node.node] = replace(node, carried_t=max(stood_t, reading.t))
+        return None
+    state.nodes[node.node] = replace(node, carried_t=None, joined_t=since_t)
+    return reading if reading.from_t is not None else replace(reading, from_t=since_t)
 
 
 def let_be_carried(state: FusionState, name: str, since_t: float, until_t: float, placed: bool) -> None:

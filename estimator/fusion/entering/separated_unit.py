@@ -5,8 +5,6 @@ radios at the door. Each reading is right, and together they are wrong: nothing 
 The node goes on where ranges put it, as of a unit that is silent, and its ellipse holds the unit's way too.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 from msgspec.structs import replace
 
@@ -18,27 +16,19 @@ from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.separated_unit import SeparatedUnit
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
-from estimator.inertial.displacement import InertialDisplacement
 from estimator.measurements.displacement import Displacement
 
 
-def set_aside(state: FusionState, readings: Sequence[Displacement]) -> list[Displacement]:
-    """The displacements that move somebody: those of units that are apart only go on by themselves.
+def go_beside(state: FusionState, node: NodeState, apart: SeparatedUnit, reading: Displacement) -> None:
+    """Let a unit that is apart go on by itself.
 
     Args:
         state: the fusion.
-        readings: in order of epoch.
+        node: of the unit.
+        apart: what is known of it.
+        reading: what it has told.
     """
-    moving: list[Displacement] = []
-    for reading in readings:
-        node = state.nodes.get(reading.node)
-        if node is None or node.apart is None or node.mode != "unit":
-            moving.append(reading)
-            continue
-        state.nodes[node.node] = replace(node, apart=node.apart.going(framed(node, reading)))
-        if not isinstance(reading, InertialDisplacement):
-            state.count("not_fused")
-    return moving
+    state.nodes[node.node] = replace(node, apart=apart.going(framed(node, reading)))
 
 
 def part(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from estimator.fusion.entering.carried_bearer import let_be_carried, set_aside
+from estimator.fusion.entering.carried_bearer import let_be_carried
 from estimator.fusion.entering.unbelieved_steps import leave_behind
 from estimator.fusion.memory.ledger import GIVEN, UNSEEN
 from estimator.fusion.memory.state import FusionState
@@ -27,27 +27,6 @@ def carried() -> FusionState:
     state = fused(readings)
     let_be_carried(state, "ff1", float(STOOD_S), float(NOW_S), placed=True)
     return state
-
-
-def test_a_standstill_moves_nobody_and_the_first_step_does() -> None:
-    state = carried()
-    assert set_aside(state, [tells(16, 0.02, 15.0)]) == []
-    assert state.nodes["ff1"].carried_t == 16.0
-    step = tells(17, 0.6, 16.0)
-    assert set_aside(state, [step]) == [step]
-    assert state.nodes["ff1"].carried_t is None
-
-
-def test_a_step_that_does_not_say_since_when_begins_where_the_standstill_ended() -> None:
-    state = carried()
-    set_aside(state, [tells(16, 0.02)])
-    (step,) = set_aside(state, [tells(17, 0.6)])
-    assert step.from_t == 16.0
-
-
-def test_who_walks_is_not_set_aside() -> None:
-    readings = [tells(2, 0.7, 1.0)]
-    assert set_aside(fused([entered(node="ff1")]), readings) == readings
 
 
 def test_what_he_walked_before_is_believed() -> None:
