@@ -15,8 +15,9 @@ from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.measurements.displacement import Displacement
 
-HARDLY_MPS = 0.1
-"""A unit that tells less stands, but for the jolts of being carried; who crawls gets farther."""
+HARDLY_MPS, JOLT_M = 0.1, 0.5
+"""A unit that tells less stands; and one that tells more, until it has got so far: boots are jolted while
+somebody is carried."""
 
 
 def first_step(
@@ -31,8 +32,12 @@ def first_step(
         reading: what it has told.
     """
     since_t = stood_t if reading.from_t is None else reading.from_t
-    if math.hypot(*reading.delta_m) < HARDLY_MPS * (reading.t - since_t):
-        state.nodes[node.node] = replace(node, carried_t=max(stood_t, reading.t))
+    east, north, up = reading.delta_m
+    got_m = (0.0, 0.0)
+    if math.hypot(east, north, up) >= HARDLY_MPS * (reading.t - since_t):
+        got_m = node.carried_m[0] + east, node.carried_m[1] + north
+    if math.hypot(*got_m) < JOLT_M:
+        state.nodes[node.node] = replace(node, carried_t=max(stood_t, reading.t), carried_m=got_m)
         return None
     state.nodes[node.node] = replace(node, carried_t=None, joined_t=since_t)
     return reading if reading.from_t is not None else replace(reading, from_t=since_t)
@@ -55,6 +60,7 @@ def let_be_carried(state: FusionState, name: str, since_t: float, until_t: float
     state.nodes[name] = replace(
         node,
         carried_t=node.unit_t if still_is else None,
+        carried_m=(0.0, 0.0),
         rival=None,
         walk_factors=(1.0, 1.0),
         still=None if still_is else node.still,

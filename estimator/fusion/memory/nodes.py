@@ -51,6 +51,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         apart: its unit is not where its radio is.
         joined_t: when its unit told again how its radio goes (s).
         carried_t: its bearer is carried: epoch of the newest report of its unit that it stands (s).
+        carried_m: how far its unit has got since that report: east, north in the unit's frame (m).
         standing_asked_t: when it was last asked in vain whether he was carried while it stood (s).
         worn: how its unit is taken to be worn, see `entering.unit_mounting.Mounting`.
         first_heading_rad: heading that its unit reported first, in the unit's frame.
@@ -128,6 +129,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     apart: SeparatedUnit | None = None
     joined_t: float = -math.inf
     carried_t: float | None = None
+    carried_m: tuple[float, float] = (0.0, 0.0)
     standing_asked_t: float = -math.inf
     worn: tuple[bool, float] = (False, 0.0)
     whole_t: float = math.inf

@@ -13,7 +13,7 @@ import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from estimator.fusion.entering.carried_bearer import HARDLY_MPS, let_be_carried
+from estimator.fusion.entering.carried_bearer import HARDLY_MPS, JOLT_M, let_be_carried
 from estimator.fusion.entering.unbelieved_steps import leave_behind, unbelieve
 from estimator.fusion.memory.ledger import GIVEN, RANGE, UNSEEN
 from estimator.fusion.memory.nodes import NodeState
@@ -115,9 +115,11 @@ def standstills(steps: Array, since_t: float) -> Iterator[Standstill]:
         since_t: only of those that end later (s).
     """
     t, from_t = steps[:, 0], steps[:, 2]
-    told = t > from_t
-    believed = steps[:, GIVEN] != UNSEEN
+    told, believed = t > from_t, steps[:, GIVEN] != UNSEEN
     still = told & believed & (np.hypot(steps[:, 3], steps[:, 4]) < HARDLY_MPS * (t - from_t))
+    for begin, end in _runs(told & ~still):
+        jolt_m = steps[begin : end + 1, 3:5].sum(axis=0)
+        still[begin : end + 1] = believed[begin : end + 1].all() and np.hypot(*jolt_m) < JOLT_M
     for begin, end in _runs(still | ~told):
         if t[end] > since_t and t[end] - from_t[begin] > LONG_S and still[begin : end + 1].any():
             yield Standstill(float(from_t[begin]), float(t[end]))

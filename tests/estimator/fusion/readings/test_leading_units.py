@@ -17,6 +17,13 @@ def test_a_standstill_moves_nobody_and_the_first_step_does() -> None:
     assert state.nodes["ff1"].carried_t is None
 
 
+def test_a_jolt_of_a_boot_is_no_step_of_its_bearer() -> None:
+    state = carried()
+    assert leading(state, [tells(16, 0.3, 15.0), tells(17, -0.2, 16.0), tells(18, 0.01, 17.0)]) == []
+    assert leading(state, [tells(19, 0.3, 18.0)]) == []
+    assert len(leading(state, [tells(20, 0.3, 19.0)])) == 1
+
+
 def test_a_step_that_does_not_say_since_when_begins_where_the_standstill_ended() -> None:
     state = carried()
     leading(state, [tells(16, 0.02)])

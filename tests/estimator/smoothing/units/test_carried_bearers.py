@@ -21,7 +21,13 @@ def test_a_standstill_lasts_from_the_last_step_to_the_next() -> None:
 
 
 def test_a_jolt_while_he_is_carried_is_no_step() -> None:
-    assert list(standstills(steps([0.01] * 4 + [0.08] + [0.01] * 4), 0.0)) == [Standstill(0.0, 9.0)]
+    told = steps([0.01] * 4 + [0.3, -0.2] + [0.01] * 4)
+    assert list(standstills(told, 0.0)) == [Standstill(0.0, 10.0)]
+
+
+def test_who_goes_a_little_stands_before_and_after() -> None:
+    told = steps([0.01] * 8 + [0.3] * 3 + [0.01] * 8)
+    assert list(standstills(told, 0.0)) == [Standstill(0.0, 8.0), Standstill(11.0, 19.0)]
 
 
 def test_a_halt_is_no_standstill() -> None:
