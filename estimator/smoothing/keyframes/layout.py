@@ -197,6 +197,11 @@ class Layout:
         keyframes = x[: self.length * self.width].reshape(self.length, self.width)
         return keyframes[:, STATES * index : STATES * (index + 1)]
 
+    def end_of(self, x: Array, index: int) -> tuple[Array, float]:
+        """Where an estimate, flat, has a walk, by index, end: east, north (m), and when (s)."""
+        last = self.walks[index].last
+        return self.states(x, index)[last, :2], float(self.times[last, index])
+
 
 def spans_of(walks: Sequence[Walk]) -> Integers:
     """First and last keyframe of each walk, walks × 2."""

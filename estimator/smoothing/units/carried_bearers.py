@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
-from numpy.typing import NDArray
 
 from estimator.fusion.entering.carried_bearer import HARDLY_MPS, JOLT_M, let_be_carried
 from estimator.fusion.entering.unbelieved_steps import leave_behind, unbelieve
@@ -20,7 +19,8 @@ from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.unreliable_unit import is_contradicted, is_noisy, leads_elsewhere
 from estimator.graph.dense import Array
-from estimator.smoothing.keyframes.layout import Layout, Walk, own_rows
+from estimator.smoothing.keyframes.layout import Walk, own_rows
+from estimator.smoothing.keyframes.pauses import runs
 from estimator.smoothing.keyframes.walks import PLACES
 from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from estimator.smoothing.problem.solution import Solution
@@ -88,7 +88,7 @@ def carried_bearers(
             continue
         steps = own_rows(state.ledger.table("steps"), walk.number)
         stood = list(standstills(steps, state.newest_t - LOOK_S))
-        known = leads_elsewhere(node, *_end_of(layout, solved.x, i))
+        known = leads_elsewhere(node, *layout.end_of(solved.x, i))
         if not stood or not (known or _is_due(node, stood[-1], state.newest_t)):
             continue
         asked = stood if known else stood[-1:]
@@ -117,18 +117,12 @@ def standstills(steps: Array, since_t: float) -> Iterator[Standstill]:
     t, from_t = steps[:, 0], steps[:, 2]
     told, believed = t > from_t, steps[:, GIVEN] != UNSEEN
     still = told & believed & (np.hypot(steps[:, 3], steps[:, 4]) < HARDLY_MPS * (t - from_t))
-    for begin, end in _runs(told & ~still):
+    for begin, end in runs(told & ~still):
         jolt_m = steps[begin : end + 1, 3:5].sum(axis=0)
         still[begin : end + 1] = believed[begin : end + 1].all() and np.hypot(*jolt_m) < JOLT_M
-    for begin, end in _runs(still | ~told):
+    for begin, end in runs(still | ~told):
         if t[end] > since_t and t[end] - from_t[begin] > LONG_S and still[begin : end + 1].any():
             yield Standstill(float(from_t[begin]), float(t[end]))
-
-
-def _runs(chosen: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
-    """First and last of each run of chosen ones."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(np.int8)))
-    yield from zip(edges[::2].tolist(), (edges[1::2] - 1).tolist(), strict=True)
 
 
 def _led(node: NodeState, walk: Walk) -> bool:
@@ -145,12 +139,6 @@ def _is_due(node: NodeState, stood: Standstill, now: float) -> bool:
     """
     waited_s = now - node.standing_asked_t
     return is_noisy(node) and waited_s > max(LONG_S, AGAIN * (now - stood.since_t))
-
-
-def _end_of(layout: Layout, x: Array, index: int) -> tuple[Array, float]:
-    """Where an estimate, flat, has a walk end: east, north (m), and when (s)."""
-    walk = layout.walks[index]
-    return layout.states(x, index)[walk.last, :2], float(layout.times[walk.last, index])
 
 
 def _is_plain(node: NodeState, stood: Standstill) -> bool:
@@ -178,13 +166,12 @@ def _tried(
     as_it_is = build(plain)
     # Who is carried says nothing of floors: both cost by the same ones.
     as_it_is.rows.floors = floors = as_it_is.rows.through(solved.x)
-    found = list[Carrying]()
+    placed, found = _ranged(problem, walk, stood), list[Carrying]()
     try:
         known = as_it_is.solve(solved.x, iterations=ITERATIONS, resting=resting)
         before = marginal_cost(as_it_is, known, PLACE).all
         for since_t in _beginnings(problem, known.x, index, stood):
             other, carried_in = plain.copy(), stood._replace(since_t=since_t)
-            placed = _ranged(problem, walk, stood)
             unbelieve(other, walk.number, *carried_in, placed)
             trial = build(other)
             trial.rows.floors = floors
@@ -238,7 +225,7 @@ def _off_m(problem: Problem, x: Array, index: int) -> Array:
     rival = problem.layout.state.life(problem.layout.walks[index].number).rival
     if rival is None:
         return np.zeros(2)
-    shown_m, t = _end_of(problem.layout, x, index)
+    shown_m, t = problem.layout.end_of(x, index)
     return np.asarray(rival.place(t)[0] - shown_m)
 
 

@@ -15,7 +15,7 @@ from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.inertial.levelling import ANYWHERE_RAD
 from estimator.smoothing.keyframes.layout import Layout, own_rows
-from estimator.smoothing.keyframes.pauses import PAUSE_S
+from estimator.smoothing.keyframes.pauses import PAUSE_S, runs
 from estimator.smoothing.keyframes.walks import HEADING
 from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from estimator.smoothing.problem.solution import Solution
@@ -54,12 +54,16 @@ def turned_at_pauses(
     if not asked:
         return problem, solved
     floors = problem.rows.through(solved.x)
-    found = _turned(problem, asked, floors, build).solve(solved.x, METRES_OFF, resting=resting)
-    turns = [pause for pause in asked if abs(_turned_rad(layout, found.x, pause)) > LEAST_RAD]
-    if not turns or solved.cost - found.cost < TAKEN:
+    try:
+        found = _turned(problem, asked, floors, build).solve(solved.x, METRES_OFF, resting=resting)
+        turns = [pause for pause in asked if abs(_turned_rad(layout, found.x, pause)) > LEAST_RAD]
+        if not turns or solved.cost - found.cost < TAKEN:
+            return problem, solved
+        trial = _turned(problem, turns, floors, build)
+        found = trial.solve(found.x, resting=resting)
+    except ValueError:
+        # Who may face anything after each pause may hang in the air: then nothing is known of turns.
         return problem, solved
-    trial = _turned(problem, turns, floors, build)
-    found = trial.solve(found.x, resting=resting)
     if solved.cost - found.cost < TAKEN * len(turns):
         return problem, solved
     anew = build(trial.layout.state)
@@ -80,10 +84,8 @@ def pauses(layout: Layout, index: int) -> list[Pause]:
         return []
     steps = own_rows(layout.state.ledger.table("steps"), walk.number)
     turned_t, steps = steps[steps[:, TURN] >= ANYWHERE_RAD**2, 0], steps[steps[:, 0] > steps[:, 2]]
-    unseen = np.concatenate([[False], steps[:, GIVEN] == UNSEEN, [False]])
-    begins, ends = (np.flatnonzero(edge) for edge in (unseen[1:] & ~unseen[:-1], ~unseen[1:] & unseen[:-1]))
     found = []
-    for begin, end in zip(begins.tolist(), (ends - 1).tolist(), strict=True):
+    for begin, end in runs(steps[:, GIVEN] == UNSEEN):
         pause = Pause(index, float(steps[begin, 2]), float(steps[end, 0]))
         known = (turned_t > pause.since_t - PAUSE_S) & (turned_t < pause.until_t + PAUSE_S)
         inside = layout.times[walk.first, index] < pause.since_t and end + 1 < len(steps)

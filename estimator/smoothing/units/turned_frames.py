@@ -85,11 +85,8 @@ def turned_frames(
 
 def _elsewhere(layout: Layout, solved: Solution, index: int) -> bool:
     """Whether a unit has become far noisier, or has led its bearer away from his rival."""
-    walk = layout.walks[index]
-    if is_noisy(layout.state.life(walk.number)):
-        return True
-    shown_m, t = layout.states(solved.x, index)[walk.last, :2], float(layout.times[walk.last, index])
-    return leads_elsewhere(layout.state.life(walk.number), shown_m, t)
+    node = layout.state.life(layout.walks[index].number)
+    return is_noisy(node) or leads_elsewhere(node, *layout.end_of(solved.x, index))
 
 
 def _asked(problem: Problem, by_powers: bool) -> dict[int, tuple[Way, float | None]]:
