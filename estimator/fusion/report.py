@@ -201,7 +201,7 @@ def _estimate(
     if rival or node.otherwise or node.detours or node.apart is not None:
         doubt = elsewhere_m2(node, np.array([east, north]))
         ee, en, nn = ee + float(doubt[0, 0]), en + float(doubt[0, 1]), nn + float(doubt[1, 1])
-    uu = max(uu, node.doubt_up_m2)
+    uu = max(uu, node.doubt_up_m2) + node.absolute.zeroed.contradicts_m2
     heading, sigma = _heading(state, node, covariance) if node.moving else (None, None)
     return NodeEstimate(
         node=node.node,
@@ -259,6 +259,7 @@ def relative(state: FusionState, covariance: Array, a: str, b: str) -> Relative 
     loose = loose_headings(state, covariance)
     total += swung_m2(across[None, :, loose], covariance[loose, loose])[0]
     total[2, 2] = max(total[2, 2], sum(node.doubt_up_m2 for node in ends))
+    total[2, 2] += sum(node.absolute.zeroed.contradicts_m2 for node in ends)
     held = [(*node.otherwise, *node.detours) if node.place_m is None else () for node in ends]
     total += doubt_between_m2(held[0], places[0][:2], held[1], places[1][:2])
     for node, place_m in zip(ends, places, strict=True):

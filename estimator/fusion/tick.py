@@ -15,12 +15,12 @@ from estimator.fusion.holding import EPOCH, HELD, covered, hold, names_of, parts
 from estimator.fusion.memory.state import AnyHeld, FusionState
 from estimator.fusion.motion.dead_reckoning import drift_units, was_silent
 from estimator.fusion.readings import absolute, raw_samples
-from estimator.fusion.readings.altimeter_jumps import another as another_altimeter
 from estimator.fusion.readings.clocks import retimed
 from estimator.fusion.readings.copies import without_copies
 from estimator.fusion.readings.crossings import hear
 from estimator.fusion.readings.displacements import move_units, returns
 from estimator.fusion.readings.leading_units import leading
+from estimator.fusion.readings.unseen_rises import another as another_altimeter
 from estimator.fusion.readings.unstated_starts import with_starts
 from estimator.fusion.report import estimate_of
 from estimator.fusion.rows.rows import Single

@@ -13,6 +13,7 @@ from msgspec.structs import replace
 
 from estimator.fusion import physics
 from estimator.fusion.learned.calibration import TRUSTED
+from estimator.fusion.learned.unseen_rise import Rise
 
 READINGS, LONGEST_S = 5, 10.0
 """So many readings are held against the height that is known, and for so long at most."""
@@ -38,6 +39,7 @@ class AltimeterZero(msgspec.Struct, frozen=True, array_like=True, gc=False):
             as all of them are, or all below.
         recent: its newest readings, each with its epoch (s), what it reads (m), and how far its bearer had
             gone by then (m).
+        rise: what it, or its bearer, was last found to have jumped by.
     """
 
     off_m: tuple[float, ...] = ()
@@ -46,6 +48,7 @@ class AltimeterZero(msgspec.Struct, frozen=True, array_like=True, gc=False):
     t: float = -math.inf
     odd: tuple[tuple[float, float], ...] = ()
     recent: tuple[tuple[float, float, float], ...] = ()
+    rise: Rise = Rise()
 
     def with_one(self, t: float, off_m: float) -> Self:
         """After one more reading.
@@ -71,6 +74,10 @@ class AltimeterZero(msgspec.Struct, frozen=True, array_like=True, gc=False):
         recent = (*self.recent, (t, up_m, way_m))[-RECENT:]
         return replace(self, t=max(t, self.t), odd=odd, recent=recent)
 
+    def before(self, since_t: float) -> float:
+        """Epoch of the newest reading before another one's (s)."""
+        return max((t for t, _, _ in self.recent if t < since_t), default=since_t)
+
     def steep(self, jump_m: float) -> bool:
         """Whether no stair leads up or down so far (m) on the way of all its newest readings."""
         return abs(jump_m) > STEEPEST * (self.recent[-1][2] - self.recent[0][2]) + STAIR_M
@@ -86,7 +93,7 @@ class AltimeterZero(msgspec.Struct, frozen=True, array_like=True, gc=False):
                 return self.recent[-FLAT - between][0], median(ups) - median(downs)
         return None
 
-    def jumped(self, sigma_m: float, unsure_m2: float) -> tuple[float, float] | None:
+    def has_jumped(self, sigma_m: float, unsure_m2: float) -> tuple[float, float] | None:
         """When (s) and by how much (m) its newest readings have jumped; None where that is not clear.
 
         Args:
@@ -99,6 +106,11 @@ class AltimeterZero(msgspec.Struct, frozen=True, array_like=True, gc=False):
         shared = physics.ABSOLUTE_SHARED
         unsure_m2 += sigma_m**2 * (shared + (1.0 - shared) * MEDIAN / len(self.odd))
         return (self.odd[0][0], jump_m) if jump_m**2 > JUMP_SIGMAS**2 * unsure_m2 else None
+
+    @property
+    def contradicts_m2(self) -> float:
+        """Second moment of what a height is off by as long as it is not clear whether it has jumped (m²)."""
+        return median(off_m for _, off_m in self.odd) ** 2 if len(self.odd) > 1 else 0.0
 
     @property
     def lasts(self) -> bool:

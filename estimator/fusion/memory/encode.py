@@ -71,7 +71,7 @@ class FusionRecord(msgspec.Struct, frozen=True, array_like=True):
     suspects: list[tuple[Radio, Suspicion]]
     delays_t: float
     mistold: dict[str, MistoldPlace]
-    altimeters: dict[str, float]
+    altimeters: dict[str, tuple[float, float]]
     receivers: dict[str, Receiver]
     lost: dict[int, float]
     clocks: dict[str, float]

@@ -72,7 +72,7 @@ class FusionState:
         suspects: radios that may have one, and are trusted.
         delays_t: when that was asked last (s).
         mistold: told places that may be wrong, by node.
-        altimeters: standard deviations of what they are off by beforehand, by their names (m).
+        altimeters: what they are off by beforehand, and standard deviations of that, by their names (m).
         receivers: what is known beforehand of the fixes of those who fly, by their names.
         lost: what powers and ranges lose by the newest window, by number: it starts from there again (dB, m).
         clocks: how late ranges of radios are stamped against their bearers' steps, by node (s).
@@ -119,7 +119,7 @@ class FusionState:
         self.suspects: dict[Radio, Suspicion] = {}
         self.delays_t = -math.inf
         self.mistold: dict[str, MistoldPlace] = {}
-        self.altimeters: dict[str, float] = {}
+        self.altimeters: dict[str, tuple[float, float]] = {}
         self.receivers: dict[str, Receiver] = {}
         self.lost: dict[int, float] = {}
         self.clocks: dict[str, float] = {}

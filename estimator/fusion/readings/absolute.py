@@ -92,14 +92,15 @@ def height(state: FusionState, reading: Altitude | Pressure) -> list[Single]:
     if node.mode == "undecided":
         state.count("not_fused")
         return []
-    up, sigma = _height(state, node, reading)
+    up, alone_m = _height(state, reading)
     if up is None:
         text = f"the pressure of {node.node} waits for one of the base: there is no reference"
         state.say("not_fused", reading.t, node.node, text, once="no reference pressure")
         state.count("not_fused")
         return []
-    sigma, noise = max(sigma, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE
-    node = heard_altimeter(state, node, reading.t, up, sigma)
+    alone_m, noise = max(alone_m, physics.SIGMA_FLOOR_M), physics.HEIGHT_NOISE
+    sigma = alone_m * (_correlated(node, reading.t) if isinstance(reading, Pressure) else 1.0)
+    node = heard_altimeter(state, node, reading.t, up, (sigma, alone_m))
     name = node.absolute.zeroed.name
     if name is None and node.role not in physics.OUTSIDE_ROLES:
         state.count("not_fused")
@@ -151,7 +152,8 @@ def _enter_single(
     state.ledger.add("singles", t, node.index, axis, value, sigma, physics.NOISES.index(noise), source)
 
 
-def _height(state: FusionState, node: NodeState, reading: Altitude | Pressure) -> tuple[float | None, float]:
+def _height(state: FusionState, reading: Altitude | Pressure) -> tuple[float | None, float]:
+    """A height, and its standard deviation by itself (m); None: no pressure of the base is told."""
     if isinstance(reading, Altitude):
         return reading.up_m, reading.sigma_m or physics.ALTITUDE_SIGMA_M
     if state.reference is None:
@@ -159,12 +161,18 @@ def _height(state: FusionState, node: NodeState, reading: Altitude | Pressure) -
     reference_pa, reference_m = state.reference
     above = height_above(reference_pa, reading.pressure_pa)
     sigma = np.hypot(reading.sigma_m or physics.PRESSURE_SIGMA_M, physics.LAYER_SIGMA * above)
-    if node.pressure_t is not None:
-        # Pressures soon after each other share their error: together they may weigh as one per correlation
-        # time.
-        since = np.clip(reading.t - node.pressure_t, 0.01, physics.PRESSURE_CORRELATION_S)
-        sigma *= np.sqrt(physics.PRESSURE_CORRELATION_S / since)
     return reference_m + above, float(sigma)
+
+
+def _correlated(node: NodeState, t: float) -> float:
+    """By how much a pressure is noisier than by itself, as those soon after each other share their error.
+
+    Together they may weigh as one per correlation time.
+    """
+    if node.pressure_t is None:
+        return 1.0
+    since_s = np.clip(t - node.pressure_t, 0.01, physics.PRESSURE_CORRELATION_S)
+    return float(np.sqrt(physics.PRESSURE_CORRELATION_S / since_s))
 
 
 def _takes(state: FusionState, node: NodeState, t: float, what: str) -> bool:

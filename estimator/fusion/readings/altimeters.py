@@ -8,14 +8,17 @@ from estimator.fusion.learned.altimeter_zero import AltimeterZero
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.recent_places import offset_of
-from estimator.fusion.readings.altimeter_jumps import doubt_height, jump, new_altimeter
+from estimator.fusion.readings.altimeter_jumps import jump
+from estimator.fusion.readings.unseen_rises import doubt_height, new_altimeter
 from estimator.graph.variable import Variable
 
 NOTHING_M2 = 1e-9
 """Below it no walk is worth its work."""
 
 
-def heard_altimeter(state: FusionState, node: NodeState, t: float, up_m: float, sigma_m: float) -> NodeState:
+def heard_altimeter(
+    state: FusionState, node: NodeState, t: float, up_m: float, sigmas_m: tuple[float, float]
+) -> NodeState:
     """The node after its altimeter has been heard, whose offset has walked on since its last reading.
 
     Args:
@@ -23,9 +26,10 @@ def heard_altimeter(state: FusionState, node: NodeState, t: float, up_m: float, 
         node: who carries it, whose position is decided.
         t: epoch of the reading (s).
         up_m: what it reads (m).
-        sigma_m: its standard deviation (m).
+        sigmas_m: its standard deviation as one of many that share their error, and by itself, which tells
+            whether it has jumped (m).
     """
-    known = node.absolute.zeroed
+    (sigma_m, alone_m), known = sigmas_m, node.absolute.zeroed
     if node.role in physics.OUTSIDE_ROLES:
         return node
     if known.name is None:
@@ -38,8 +42,8 @@ def heard_altimeter(state: FusionState, node: NodeState, t: float, up_m: float, 
         variable = Variable("altimeter", known.name)
         _drift(state, variable, t - known.t)
         expected_m = float(state.graph.value(variable)[0]) + _up_m(state, node, t)
-        known = known.after(t, up_m, node.way_m, up_m - expected_m, sigma_m)
-        found = known.jumped(sigma_m, _unsure_m2(state, node, variable)) if known.lasts else None
+        known = known.after(t, up_m, node.way_m, up_m - expected_m, alone_m)
+        found = known.has_jumped(alone_m, _unsure_m2(state, node, variable)) if known.lasts else None
         if node.mode == "unit" and node.level and not (found and known.steep(found[1])):
             # What is expected of his height follows him slowly, and whatever his altimeter reads.
             found = known.steeper()
@@ -62,7 +66,7 @@ def _zero(
     if off_m:
         text = f"the altimeter of {node.node} is off by {off_m:+.1f} m: it was not zeroed"
         state.say("outlier", t, node.node, text)
-    return replace(known, name=new_altimeter(state, node, doubt_m), t=t)
+    return replace(known, name=new_altimeter(state, node, 0.0, doubt_m), t=t)
 
 
 def _up_m(state: FusionState, node: NodeState, t: float) -> float:

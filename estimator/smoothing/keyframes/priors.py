@@ -73,8 +73,9 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
             continue
         if key[0] == "altimeter":
             at.append(size + start)
-            mean.append(0.0)
-            known_by.append(state.altimeters[state.sources[key[1]]] ** -2)
+            off_m, sigma_m = state.altimeters[state.sources[key[1]]]
+            mean.append(off_m)
+            known_by.append(sigma_m**-2)
             continue
         if key[0] == "receiver":
             receiver = state.receivers[state.sources[key[1]]]

@@ -50,17 +50,17 @@ def expected_and_read(off_m: list[float]) -> AltimeterZero:
 
 
 def test_readings_that_stay_off_for_some_seconds_have_jumped() -> None:
-    assert expected_and_read([0.1, *(3.0,) * 6]).jumped(SIGMA_M, 0.1) == (2.0, 3.0)
+    assert expected_and_read([0.1, *(3.0,) * 6]).has_jumped(SIGMA_M, 0.1) == (2.0, 3.0)
 
 
 def test_a_draught_is_no_jump() -> None:
     """It lasts for some seconds."""
     count = int(ODD_S / 2.0) + 1
-    assert expected_and_read([*(3.0,) * count, 0.1, *(3.0,) * count]).jumped(SIGMA_M, 0.1) is None
+    assert expected_and_read([*(3.0,) * count, 0.1, *(3.0,) * count]).has_jumped(SIGMA_M, 0.1) is None
 
 
 def test_who_is_expected_anywhere_has_not_jumped() -> None:
-    assert expected_and_read([3.0] * 6).jumped(SIGMA_M, 2.0**2) is None
+    assert expected_and_read([3.0] * 6).has_jumped(SIGMA_M, 2.0**2) is None
 
 
 def walked_and_read(way_m: float, up_m: float) -> AltimeterZero:

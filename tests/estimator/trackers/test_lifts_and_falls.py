@@ -1,0 +1,207 @@
+"""Crews ride in lifts and fall through floors; their units tell that they stand where they are (0127)."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from estimator.estimate import Covariance6, Vector3
+from estimator.levels import most_probable
+from estimator.measurements import AnyReading
+from estimator.measurements.altitude import Altitude, Pressure
+from estimator.measurements.displacement import Displacement
+from estimator.measurements.node import Node
+from estimator.simulate.vitals import pressure_pa
+from estimator.trackers.batch import BatchSmoother
+from estimator.trackers.kirchhoff import KirchhoffTracker
+from tests.estimator.trackers.entry import BASE
+from tests.estimator.trackers.restarts import assert_goes_on_alike
+
+STOREY_M, LOWEST, HIGHEST, ON_A_FLOOR_M = 3.5, -2, 12, 0.4
+LEVELS = [(k, str(k), STOREY_M * k) for k in range(LOWEST, HIGHEST)]
+CREW, OTHER = ("ff1", "ff2", "ff3"), "ff4"
+SECONDS, RIDES_S, WAIT_S, WALK_S = 260, 100, 4, 70
+GROUND_PA = 100_000.0
+
+
+class Incident(NamedTuple):
+    """What happens to a crew that walks about on the ground floor, and to another one's who stays there.
+
+    Attributes:
+        up_m: so far they ride or fall (m).
+        speed_mps: how fast.
+        names: who is inside.
+        altimeters: who has an altimeter.
+        sees_stairs: their units measure heights, but not where they ride.
+        by_pressure: they tell air pressures.
+        pressed_m: what all altimeters read less from `RIDES_S` on, for 100 s (m).
+    """
+
+    up_m: float = STOREY_M
+    speed_mps: float = 1.5
+    names: Sequence[str] = (*CREW, OTHER)
+    altimeters: Sequence[str] = (*CREW, OTHER)
+    sees_stairs: bool = True
+    by_pressure: bool = False
+    pressed_m: float = 0.0
+
+    def height_m(self, name: str, second: int) -> float:
+        """How high somebody truly is (m)."""
+        risen_m = min(max(second - RIDES_S, 0) * self.speed_mps, abs(self.up_m))
+        return float(np.sign(self.up_m)) * risen_m if name != OTHER else 0.0
+
+    def told(self, seed: int) -> list[AnyReading]:
+        """All that is told of them, in order of epoch."""
+        chance, rides_s = np.random.default_rng(seed), abs(self.up_m) / self.speed_mps
+        places = {name: (20.0 if name == OTHER else 0.0, float(i), 0.0) for i, name in enumerate(self.names)}
+        told: list[AnyReading] = [
+            BASE,
+            *(Node(t=0.0, node=n, role="responder", position_m=at, sigma_m=0.3) for n, at in places.items()),
+        ]
+        for second in range(1, SECONDS + 1):
+            t = float(second)
+            if self.by_pressure and second % 5 == 1:
+                told.append(Pressure(t=t, node="base", pressure_pa=float(GROUND_PA + 2.5 * chance.normal())))
+            for i, name in enumerate(self.names):
+                stands = (second + 20 * (name == OTHER)) % WALK_S <= 15
+                if name != OTHER:
+                    stands |= RIDES_S - WAIT_S < second < RIDES_S + rides_s + WAIT_S
+                east_m = 0.0 if stands else 0.5 * (1.0 if second // WALK_S % 2 else -1.0)
+                noise_m = (0.002 if stands else 0.02) * chance.normal(0.0, 1.0, 3)
+                seen_m = float(noise_m[2]) if self.sees_stairs else 0.0
+                delta_m = (east_m + float(noise_m[0]), float(noise_m[1]), seen_m)
+                told.append(Displacement(t=t, from_t=t - 1.0, node=name, delta_m=delta_m))
+                if name not in self.altimeters or (second + i) % 2:
+                    continue
+                reads_m = self.height_m(name, second) - self.pressed_m * (0 < second - RIDES_S <= 100)
+                if self.by_pressure:
+                    pa = float(pressure_pa(np.array([reads_m]), GROUND_PA)[0] + 2.5 * chance.normal())
+                    told.append(Pressure(t=t, node=name, pressure_pa=pa))
+                else:
+                    told.append(
+                        Altitude(t=t, node=name, up_m=float(reads_m + 0.3 * chance.normal()), sigma_m=0.5)
+                    )
+        return told
+
+    def judged(self, name: str, second: int, up_m: float, variance_m2: float) -> tuple[bool, bool] | None:
+        """Whether what is shown is the right storey, and whether that is sure; None: he is on none."""
+        floor = round(self.height_m(name, second) / STOREY_M)
+        if abs(self.height_m(name, second) - floor * STOREY_M) > ON_A_FLOOR_M:
+            return None
+        storey = most_probable(LEVELS, up_m, variance_m2)
+        assert storey is not None
+        return storey.level == floor, storey.probability > 0.9
+
+
+class Storeys(NamedTuple):
+    """Seconds on a floor, those sure (p > 0.9) of its storey, and those sure of another one."""
+
+    seconds: int
+    right: int
+    wrong: int
+
+
+def counted(judged: Sequence[tuple[bool, bool] | None]) -> Storeys:
+    found = [one for one in judged if one is not None]
+    right = sum(fits and sure for fits, sure in found)
+    return Storeys(len(found), right, sum(sure and not fits for fits, sure in found))
+
+
+def live(incident: Incident, seed: int, of: Sequence[str] = ()) -> Storeys:
+    """What is shown while it goes on."""
+    tracker, found, coming = KirchhoffTracker(), list[tuple[bool, bool] | None](), incident.told(seed)
+    for second in range(SECONDS + 1):
+        tracker.fold([reading for reading in coming if reading.t == second])
+        for e in tracker.estimates():
+            if second and e.node in (of or incident.names):
+                up_m, variance_m2 = height_of(e.position_m, e.covariance_m2)
+                found.append(incident.judged(e.node, second, up_m, variance_m2))
+    return counted(found)
+
+
+def looking_back(incident: Incident, seed: int, of: Sequence[str] = ()) -> Storeys:
+    """What is shown when all is known."""
+    found = list[tuple[bool, bool] | None]()
+    for name, points in BatchSmoother().smooth(incident.told(seed)).items():
+        for point in points:
+            if name in (of or incident.names) and point.t == int(point.t):
+                up_m, variance_m2 = height_of(point.position_m, point.covariance_m2)
+                found.append(incident.judged(name, int(point.t), up_m, variance_m2))
+    return counted(found)
+
+
+def height_of(position_m: Vector3 | None, covariance_m2: Covariance6 | None) -> tuple[float, float]:
+    assert position_m is not None
+    assert covariance_m2 is not None
+    return position_m[2], covariance_m2[5]
+
+
+def notices(incident: Incident, seed: int) -> list[str]:
+    tracker, texts = KirchhoffTracker(), list[str]()
+    coming = incident.told(seed)
+    for second in range(SECONDS + 1):
+        tracker.fold([reading for reading in coming if reading.t == second])
+        texts += [notice.text for notice in tracker.take_notices() if notice.code == "conflict"]
+    return texts
+
+
+@pytest.mark.parametrize("sees_stairs", [True, False])
+@pytest.mark.parametrize(("storeys", "speed_mps"), [(1, 1.5), (3, 1.5), (10, 2.5), (-2, 1.5)])
+def test_a_crew_in_a_lift_is_shown_on_the_storey_that_it_has_got_to(
+    sees_stairs: bool, storeys: int, speed_mps: float
+) -> None:
+    """Its altimeters were taken to be wrong, as none of its units climbed: it stayed on the ground floor."""
+    ride = Incident(STOREY_M * storeys, speed_mps, sees_stairs=sees_stairs)
+    shown, back = live(ride, 1), looking_back(ride, 1)
+    assert shown.wrong < 0.01 * shown.seconds
+    assert shown.right > 0.65 * shown.seconds
+    assert back.wrong == 0
+    assert back.right > 0.95 * back.seconds
+
+
+def test_where_all_who_are_inside_ride_it_is_told_as_well() -> None:
+    ride = Incident(3.0 * STOREY_M, names=CREW)
+    shown = live(ride, 2)
+    assert shown.wrong < 0.01 * shown.seconds
+    assert shown.right > 0.9 * shown.seconds
+
+
+def test_air_pressures_tell_of_a_ride_of_one_storey() -> None:
+    ride = Incident(by_pressure=True)
+    shown, back = live(ride, 3), looking_back(ride, 3)
+    assert shown.wrong < 0.02 * shown.seconds
+    assert back.wrong == 0
+
+
+@pytest.mark.parametrize("up_m", [STOREY_M, -STOREY_M])
+def test_of_who_rides_or_falls_alone_nobody_is_sure_where_he_is(up_m: float) -> None:
+    """His altimeter may be wrong as well: both are said, within seconds."""
+    alone = Incident(up_m, names=("ff1", OTHER))
+    shown, back = live(alone, 4), looking_back(alone, 4)
+    assert shown.wrong < 0.02 * shown.seconds
+    assert back.wrong < 0.02 * back.seconds
+    assert [text for text in notices(alone, 4) if "by a lift or a fall" in text]
+
+
+def test_who_stands_beside_who_rides_may_ride_with_him() -> None:
+    """He has no altimeter, and was surely shown on the ground floor."""
+    ride = Incident(3.0 * STOREY_M, altimeters=("ff1", OTHER))
+    assert live(ride, 5, of=("ff2", "ff3")).wrong < 40
+
+
+@pytest.mark.parametrize(("sees_stairs", "least"), [(True, 0.95), (False, 0.6)])
+def test_a_step_of_pressure_on_a_crew_that_stands_together_makes_nobody_sure(
+    sees_stairs: bool, least: float
+) -> None:
+    """36 Pa, and back: when that is undone, where they walk, it has told what it was."""
+    pressed = Incident(0.0, names=CREW, sees_stairs=sees_stairs, pressed_m=3.0)
+    shown, back = live(pressed, 6), looking_back(pressed, 6)
+    assert shown.wrong == 0
+    assert back.wrong == 0
+    assert back.right > least * back.seconds
+
+
+@pytest.mark.parametrize("stopped_s", [5, 11, 30])
+def test_a_tracker_that_is_stopped_in_the_midst_of_a_ride_goes_on_alike(stopped_s: int) -> None:
+    assert_goes_on_alike(Incident(10.0 * STOREY_M, 2.5).told(7), RIDES_S + stopped_s)
