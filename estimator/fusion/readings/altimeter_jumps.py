@@ -7,6 +7,7 @@ through a floor may have a unit that tells nothing of it (decision 0127).
 
 from statistics import median
 
+import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
@@ -29,6 +30,8 @@ ALIKE = 0.5
 """Two have jumped alike that differ by no more than this factor."""
 SAME_TIME_S = 6.0
 """What has begun within so long of a jump is the same one."""
+OUTSIDE_M = 10.0
+"""Who is nearer to the base may be outside, where no fan presses."""
 TOLD_P = 0.1
 """From so likely on it is told that they may have gone up or down."""
 
@@ -51,12 +54,15 @@ def jump(
     node = state.nodes[node.node] = replace(node, absolute=replace(node.absolute, zeroed=known))
     others = [o for o in state.nodes.values() if o.node != node.node and o.absolute.zeroed.name is not None]
     alike = [node, *(o for o in others if _alike(state, o, since_t, jump_m))]
-    risen = [*alike, *(o for o in others if o not in alike and _has_just_risen(o, since_t, jump_m))]
+    whole_m = _whole(known, since_t, jump_m).up_m
+    # Another crew may be on a stair meanwhile.
+    group = [one for one in alike if are_together(state, node, one) or not _may_climb(one, jump_m)]
+    risen = [*group, *(o for o in others if o not in alike and _has_just_risen(o, since_t, jump_m))]
     witnesses = [o for o in others if o not in risen and _is_witness(state, o, since_t, jump_m)]
     together = all(are_together(state, node, one) for one in risen)
-    standing = all(has_stood(state, one, since_t) for one in alike)
-    whole_m = _whole(known, since_t, jump_m).up_m
+    standing = all(has_stood(state, one, since_t) for one in group)
     p = risen_p(whole_m, Circumstances(len(risen), together, standing, len(witnesses)))
+    alike = group if p > TOLD_P else alike
     for one in alike:
         if p > TOLD_P or not goes_back(state, one, since_t, jump_m):
             share_jump(state, one, _whole(one.absolute.zeroed, since_t, jump_m), p)
@@ -97,6 +103,12 @@ def _alike(state: FusionState, other: NodeState, since_t: float, jump_m: float) 
     return bool(ALIKE < moved_m / jump_m < 1.0 / ALIKE)
 
 
+def _may_climb(other: NodeState, jump_m: float) -> bool:
+    """Whether a stair on its way may be what another altimeter tells: its unit sees none."""
+    known = other.absolute.zeroed
+    return other.mode == "unit" and other.level and bool(known.recent) and not known.steep(jump_m)
+
+
 def _has_just_risen(other: NodeState, since_t: float, jump_m: float) -> bool:
     """Whether another altimeter has been found to have jumped to the same side at the same time."""
     rise = other.absolute.zeroed.rise
@@ -105,8 +117,10 @@ def _has_just_risen(other: NodeState, since_t: float, jump_m: float) -> bool:
 
 
 def _is_witness(state: FusionState, other: NodeState, since_t: float, jump_m: float) -> bool:
-    """Whether another altimeter has not jumped, though it was read before and after."""
+    """Whether another altimeter inside has not jumped, though it was read before and after."""
     if not (other.decided and other.moving) or other.role in physics.OUTSIDE_ROLES:
+        return False
+    if np.hypot(*(state.place(other) - state.base_place())[:2]) < OUTSIDE_M:
         return False
     moved_m = _moved_m(state, other.absolute.zeroed, since_t)
     return moved_m is not None and abs(moved_m) < ALIKE * abs(jump_m)

@@ -21,7 +21,7 @@ from tests.estimator.trackers.restarts import assert_goes_on_alike
 STOREY_M, LOWEST, HIGHEST, ON_A_FLOOR_M = 3.5, -2, 12, 0.4
 LEVELS = [(k, str(k), STOREY_M * k) for k in range(LOWEST, HIGHEST)]
 CREW, OTHER = ("ff1", "ff2", "ff3"), "ff4"
-SECONDS, RIDES_S, WAIT_S, WALK_S = 260, 100, 4, 70
+SECONDS, RIDES_S, WAIT_S, WALK_S, STAIR_S = 260, 100, 4, 70, 12
 GROUND_PA = 100_000.0
 
 
@@ -35,6 +35,7 @@ class Incident(NamedTuple):
         altimeters: who has an altimeter.
         sees_stairs: their units measure heights, but not where they ride.
         by_pressure: they tell air pressures.
+        climbs: who stays below climbs a stair instead, at the same time.
         pressed_m: what all altimeters read less from `RIDES_S` on, for 100 s (m).
     """
 
@@ -44,12 +45,15 @@ class Incident(NamedTuple):
     altimeters: Sequence[str] = (*CREW, OTHER)
     sees_stairs: bool = True
     by_pressure: bool = False
+    climbs: bool = False
     pressed_m: float = 0.0
 
     def height_m(self, name: str, second: int) -> float:
         """How high somebody truly is (m)."""
+        if name == OTHER:
+            return self.climbs * STOREY_M * min(max(second - RIDES_S + 6, 0) / STAIR_S, 1.0)
         risen_m = min(max(second - RIDES_S, 0) * self.speed_mps, abs(self.up_m))
-        return float(np.sign(self.up_m)) * risen_m if name != OTHER else 0.0
+        return float(np.sign(self.up_m)) * risen_m
 
     def told(self, seed: int) -> list[AnyReading]:
         """All that is told of them, in order of epoch."""
@@ -67,6 +71,7 @@ class Incident(NamedTuple):
                 stands = (second + 20 * (name == OTHER)) % WALK_S <= 15
                 if name != OTHER:
                     stands |= RIDES_S - WAIT_S < second < RIDES_S + rides_s + WAIT_S
+                stands &= not (self.climbs and name == OTHER and abs(second - RIDES_S) < STAIR_S)
                 east_m = 0.0 if stands else 0.5 * (1.0 if second // WALK_S % 2 else -1.0)
                 noise_m = (0.002 if stands else 0.02) * chance.normal(0.0, 1.0, 3)
                 seen_m = float(noise_m[2]) if self.sees_stairs else 0.0
@@ -165,6 +170,15 @@ def test_where_all_who_are_inside_ride_it_is_told_as_well() -> None:
     shown = live(ride, 2)
     assert shown.wrong < 0.01 * shown.seconds
     assert shown.right > 0.9 * shown.seconds
+
+
+def test_a_crew_that_climbs_a_stair_meanwhile_does_not_make_it_a_step_of_pressure() -> None:
+    """Its units see none, and its altimeters rise by as much."""
+    ride = Incident(sees_stairs=False, climbs=True)
+    shown, back = live(ride, 8, CREW), looking_back(ride, 8, CREW)
+    assert shown.wrong < 0.02 * shown.seconds
+    assert back.wrong == 0
+    assert [text for text in notices(ride, 8) if "ff2, ff1, ff3 may have gone up" in text]
 
 
 def test_air_pressures_tell_of_a_ride_of_one_storey() -> None:
