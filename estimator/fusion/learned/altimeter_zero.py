@@ -78,6 +78,15 @@ class AltimeterZero(msgspec.Struct, frozen=True, array_like=True, gc=False):
         """Epoch of the newest reading before another one's (s)."""
         return max((t for t, _, _ in self.recent if t < since_t), default=since_t)
 
+    def level_since(self) -> float:
+        """Epoch of the reading from which on it has read what it reads now (s)."""
+        now_m, since_t = median(up_m for _, up_m, _ in self.recent[-FLAT:]), self.t
+        for t, up_m, _ in reversed(self.recent):
+            if abs(up_m - now_m) > ODD_M:
+                break
+            since_t = t
+        return since_t
+
     def steep(self, jump_m: float) -> bool:
         """Whether no stair leads up or down so far (m) on the way of all its newest readings."""
         return abs(jump_m) > STEEPEST * (self.recent[-1][2] - self.recent[0][2]) + STAIR_M

@@ -62,7 +62,8 @@ def share_jump(state: FusionState, node: NodeState, rise: Rise, risen_p: float) 
         off_m = float(state.graph.value(was)[0])
         sigma_m = math.sqrt(float(state.graph.covariance()[row, row]) + (1.0 - risen_p) * rise.up_m**2)
         if node.mode == "unit":
-            _let_rise(state, node, known.before(rise.since_t), risen_p * rise.up_m**2)
+            level_t = max(known.level_since(), rise.since_t) if known.recent else known.t
+            _let_rise(state, node, (known.before(rise.since_t), level_t), risen_p * rise.up_m**2)
     _rename(state, node, rise.since_t, new_altimeter(state, node, off_m, sigma_m), rise)
 
 
@@ -97,7 +98,7 @@ def doubt_companions(state: FusionState, node: NodeState, since_t: float, doubt_
     for one in list(state.nodes.values()):
         beside = one.mode == "unit" and one.absolute.zeroed.name is None and are_together(state, node, one)
         if beside and has_stood(state, one, since_t):
-            _let_rise(state, one, since_t, doubt_m2)
+            _let_rise(state, one, (since_t - STOOD_S, since_t + STOOD_S), doubt_m2)
 
 
 def doubt_height(state: FusionState, node: NodeState, since_t: float, doubt_m2: float) -> None:
@@ -123,13 +124,19 @@ def are_together(state: FusionState, one: NodeState, other: NodeState) -> bool:
 
 
 def has_stood(state: FusionState, node: NodeState, since_t: float) -> bool:
-    """Whether a node stood at an epoch (s), or has gone nowhere lately; who has no unit may have."""
+    """Whether a node stood at an epoch (s), or has gone nowhere lately; who has no unit may have.
+
+    Lifts are of steel: of who was silent in one, a step tells afterwards how far he has got in all that time.
+    """
     steps = state.ledger.table("steps")
     mine = steps[steps[:, 1] == node.index]
-    newest_t = mine[-1, 0] if len(mine) else since_t
+    gone_m, newest_t = np.hypot(mine[:, 3], mine[:, 4]), mine[-1, 0] if len(mine) else since_t
+    lasted_s = mine[:, 0] - mine[:, 2]
+    at = (mine[:, 0] > since_t - STOOD_S) & (mine[:, 2] < since_t + STOOD_S)
+    if (at & (lasted_s > 2.0 * STOOD_S) & (gone_m * 2.0 * STOOD_S < STOOD_M * lasted_s)).any():
+        return True
     for begin_t, end_t in ((since_t - STOOD_S, since_t + STOOD_S), (newest_t - 2.0 * STOOD_S, newest_t)):
-        some = mine[(mine[:, 0] > begin_t) & (mine[:, 0] <= end_t)]
-        if float(np.hypot(some[:, 3], some[:, 4]).sum()) < STOOD_M:
+        if float(gone_m[(mine[:, 0] > begin_t) & (mine[:, 0] <= end_t)].sum()) < STOOD_M:
             return True
     return False
 
@@ -145,15 +152,16 @@ def _rename(state: FusionState, node: NodeState, since_t: float, new: str, rise:
     state.nodes[node.node] = replace(node, absolute=replace(node.absolute, zeroed=known))
 
 
-def _let_rise(state: FusionState, node: NodeState, since_t: float, doubt_m2: float) -> None:
-    """Let a node have gone up or down, in all that its unit has told since an epoch (s), by so much (m²)."""
+def _let_rise(state: FusionState, node: NodeState, during: tuple[float, float], doubt_m2: float) -> None:
+    """Let a node have gone up or down by so much (m²), in what its unit has told between two epochs (s)."""
     steps = state.ledger.table("steps").copy()
-    mine = (steps[:, 1] == node.index) & (steps[:, 0] > since_t)
-    if not mine.any():
-        doubt_height(state, node, since_t, doubt_m2)
+    lasted_s = steps[:, 0] - steps[:, 2]
+    mine = (steps[:, 1] == node.index) & (steps[:, 0] > during[0]) & (steps[:, 2] < during[1])
+    if not lasted_s[mine].sum() > 0.0:
+        doubt_height(state, node, during[0], doubt_m2)
         return
     _loosen(state, node, doubt_m2)
-    steps[mine, 7] += doubt_m2 / np.count_nonzero(mine)
+    steps[mine, 7] += doubt_m2 * lasted_s[mine] / lasted_s[mine].sum()
     state.ledger.replace("steps", steps)
 
 

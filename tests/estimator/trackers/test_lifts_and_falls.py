@@ -36,6 +36,7 @@ class Incident(NamedTuple):
         sees_stairs: their units measure heights, but not where they ride.
         by_pressure: they tell air pressures.
         climbs: who stays below climbs a stair instead, at the same time.
+        silent_s: for so long from the ride on nothing of them is heard; then their steps come as one.
         pressed_m: what all altimeters read less from `RIDES_S` on, for 100 s (m).
     """
 
@@ -46,6 +47,7 @@ class Incident(NamedTuple):
     sees_stairs: bool = True
     by_pressure: bool = False
     climbs: bool = False
+    silent_s: int = 0
     pressed_m: float = 0.0
 
     def height_m(self, name: str, second: int) -> float:
@@ -76,7 +78,11 @@ class Incident(NamedTuple):
                 noise_m = (0.002 if stands else 0.02) * chance.normal(0.0, 1.0, 3)
                 seen_m = float(noise_m[2]) if self.sees_stairs else 0.0
                 delta_m = (east_m + float(noise_m[0]), float(noise_m[1]), seen_m)
-                told.append(Displacement(t=t, from_t=t - 1.0, node=name, delta_m=delta_m))
+                heard_s = 0 if name == OTHER else second - RIDES_S
+                if 0 < heard_s <= self.silent_s:
+                    continue
+                from_t = t - 1.0 - (self.silent_s if heard_s == self.silent_s + 1 else 0)
+                told.append(Displacement(t=t, from_t=from_t, node=name, delta_m=delta_m))
                 if name not in self.altimeters or (second + i) % 2:
                     continue
                 reads_m = self.height_m(name, second) - self.pressed_m * (0 < second - RIDES_S <= 100)
@@ -179,6 +185,14 @@ def test_a_crew_that_climbs_a_stair_meanwhile_does_not_make_it_a_step_of_pressur
     assert shown.wrong < 0.02 * shown.seconds
     assert back.wrong == 0
     assert [text for text in notices(ride, 8) if "ff2, ff1, ff3 may have gone up" in text]
+
+
+@pytest.mark.parametrize("sees_stairs", [True, False])
+def test_a_crew_that_is_silent_in_a_lift_of_steel_is_shown_where_it_got_out(sees_stairs: bool) -> None:
+    ride = Incident(3.0 * STOREY_M, sees_stairs=sees_stairs, silent_s=13)
+    back = looking_back(ride, 9)
+    assert back.wrong == 0
+    assert back.right > 0.9 * back.seconds
 
 
 def test_air_pressures_tell_of_a_ride_of_one_storey() -> None:

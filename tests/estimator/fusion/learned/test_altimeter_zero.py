@@ -100,3 +100,8 @@ def test_what_it_is_said_to_be_off_by_is_what_it_is_off_by() -> None:
             squared_m2.append(off_m**2)
             said_m2.append(doubt_m**2)
     assert np.mean(squared_m2) == pytest.approx(np.mean(said_m2), rel=0.15)
+
+
+def test_it_is_level_since_what_it_reads_now() -> None:
+    assert expected_and_read([0.1, 0.0, 1.5, 3.0, 3.1, 2.9]).level_since() == 6.0
+    assert expected_and_read([0.1, 0.0, 3.0, 6.0, 9.0, 12.0]).level_since() == 10.0

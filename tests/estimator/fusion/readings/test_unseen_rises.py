@@ -62,12 +62,12 @@ def test_what_it_has_read_since_then_another_altimeter_has() -> None:
     assert (singles[~since, 6] == state.source(was)).all()
 
 
-def test_his_steps_since_then_may_have_led_up_and_no_others() -> None:
+def test_his_steps_while_it_jumped_may_have_led_up_and_no_others() -> None:
     state = INSIDE.copy()
     node, before = state.nodes["ff1"], INSIDE.ledger.table("steps")
     share_jump(state, node, Rise(SINCE_T, NOW_T, 3.0, zeroed(state).name or ""), 0.5)
     more_m2 = state.ledger.table("steps")[:, 7] - before[:, 7]
-    mine = (before[:, 1] == node.index) & (before[:, 0] >= SINCE_T)
+    mine = (before[:, 1] == node.index) & (before[:, 0] == SINCE_T)
     assert more_m2[mine].sum() == pytest.approx(0.5 * 3.0**2)
     assert not more_m2[~mine].any()
 
@@ -99,6 +99,22 @@ def test_who_walks_has_not_stood_and_is_soon_elsewhere() -> None:
     assert has_stood(walking, walking.nodes["ff2"], SINCE_T)
     assert are_together(INSIDE, INSIDE.nodes["ff1"], INSIDE.nodes["ff2"])
     assert not are_together(walking, walking.nodes["ff1"], walking.nodes["ff2"])
+
+
+def test_who_was_silent_meanwhile_has_stood_if_he_got_nowhere() -> None:
+    """Lifts are of steel."""
+    for pace_m, stands in ((0.0, True), (1.0, False)):
+        told: list[AnyReading] = [
+            Node(t=0.0, node="ff1", role="responder", position_m=(0.0, 0.0, 0.0), sigma_m=0.01)
+        ]
+        told += [step(t, t - 1.0, 1.0) for t in (1.0, 2.0, 3.0)]
+        told += [step(13.0, 3.0, 10.0 * pace_m), *(step(t, t - 1.0, 1.0) for t in (14.0, 15.0, 16.0, 17.0))]
+        state = fused(told)
+        assert has_stood(state, state.nodes["ff1"], 13.0) == stands
+
+
+def step(t: float, from_t: float, east_m: float) -> Displacement:
+    return Displacement(t=t, from_t=from_t, node="ff1", delta_m=(east_m, 0.0, 0.001))
 
 
 INSIDE = inside()
