@@ -10,10 +10,10 @@ from estimator.fusion import physics
 LEAST_M, USUAL_M = 2.2, 6.0
 """No two floors are nearer to each other, within what is read; lifts and falls go so far on average."""
 PRESSURE_M = 1.6
-"""A fan at the door puts 5 to 30 Pa more on all inside, a tenth of a metre to two; stairwells that are kept
-free of smoke up to 60 Pa (EN 12101-13)."""
+"""What a fan at the door is taken to put on all inside: 20 Pa. Stairwells that are kept free of smoke are at
+50 Pa (EN 12101-6), but who enters one walks."""
 FANS = 3.0
-"""So many steps of pressure there are for one ride of a crew or fall: fans are set up at every other fire."""
+"""So many steps of pressure are taken to come for one ride of a crew, or fall."""
 BY_CHANCE = 0.2
 """How often a crew stands, all of them and together, when pressure steps."""
 STANDING = 0.6
@@ -58,7 +58,7 @@ class Circumstances(NamedTuple):
     Attributes:
         bearers: how many of them have.
         together: their bearers are at one place.
-        standing: each of them has stood meanwhile, or stands since.
+        standing: each of them stood meanwhile, or, who is alone, stands since.
         witnesses: how many others have not jumped.
     """
 

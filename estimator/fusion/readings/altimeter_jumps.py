@@ -60,7 +60,8 @@ def jump(
     risen = [*group, *(o for o in others if o not in alike and _has_just_risen(o, since_t, jump_m))]
     witnesses = [o for o in others if o not in risen and _is_witness(state, o, since_t, jump_m)]
     together = all(are_together(state, node, one) for one in risen)
-    standing = all(has_stood(state, one, since_t) for one in group)
+    # Who falls lies afterwards; a crew that rides stands, and one that walks into a stairwell may wait there.
+    standing = all(has_stood(state, one, since_t, lately=len(risen) == 1) for one in group)
     p = risen_p(whole_m, Circumstances(len(risen), together, standing, len(witnesses)))
     alike = group if p > TOLD_P else alike
     for one in alike:

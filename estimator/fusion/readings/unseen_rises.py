@@ -15,6 +15,8 @@ from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.variable import Variable
 
+ANYTHING_M = 2.0 * physics.HEIGHT_OFF_M
+"""What one that is another from now on may be off by."""
 TOGETHER_M, SIGMAS = 3.0, 2.0
 """Who is in one lift is no farther apart, and shown no farther but for what their places are unsure by."""
 STOOD_S, STOOD_M = 2.0, 0.7
@@ -25,7 +27,7 @@ def another(state: FusionState, name: str, since_t: float) -> None:
     """Let a node's altimeter be another one from an epoch on (s), which may be off by anything."""
     node = state.nodes[name]
     if node.absolute.zeroed.name is not None:
-        _rename(state, node, since_t, new_altimeter(state, node, 0.0, 2.0 * physics.HEIGHT_OFF_M))
+        _rename(state, node, since_t, new_altimeter(state, node, 0.0, ANYTHING_M))
 
 
 def new_altimeter(state: FusionState, node: NodeState, off_m: float, sigma_m: float) -> str:
@@ -56,7 +58,7 @@ def share_jump(state: FusionState, node: NodeState, rise: Rise, risen_p: float) 
         risen_p: how likely it is the node that has moved.
     """
     known, was = node.absolute.zeroed, Variable("altimeter", rise.was)
-    off_m, sigma_m = 0.0, 2.0 * physics.HEIGHT_OFF_M
+    off_m, sigma_m = 0.0, ANYTHING_M
     if risen_p > 0.0 and was in state.graph:
         row = state.graph.starts[was]
         off_m = float(state.graph.value(was)[0])
@@ -123,8 +125,10 @@ def are_together(state: FusionState, one: NodeState, other: NodeState) -> bool:
     return apart_m < TOGETHER_M + SIGMAS * math.sqrt(max(float(unsure_m2), 0.0))
 
 
-def has_stood(state: FusionState, node: NodeState, since_t: float) -> bool:
-    """Whether a node stood at an epoch (s), or has gone nowhere lately; who has no unit may have.
+def has_stood(state: FusionState, node: NodeState, since_t: float, *, lately: bool = False) -> bool:
+    """Whether a node stood at an epoch (s), or, if that is asked, has gone nowhere lately.
+
+    Who has no unit may have.
 
     Lifts are of steel: of who was silent in one, a step tells afterwards how far he has got in all that time.
     """
@@ -135,7 +139,9 @@ def has_stood(state: FusionState, node: NodeState, since_t: float) -> bool:
     at = (mine[:, 0] > since_t - STOOD_S) & (mine[:, 2] < since_t + STOOD_S)
     if (at & (lasted_s > 2.0 * STOOD_S) & (gone_m * 2.0 * STOOD_S < STOOD_M * lasted_s)).any():
         return True
-    for begin_t, end_t in ((since_t - STOOD_S, since_t + STOOD_S), (newest_t - 2.0 * STOOD_S, newest_t)):
+    ends_t = (since_t + STOOD_S, newest_t) if lately else (since_t + STOOD_S,)
+    for end_t in ends_t:
+        begin_t = end_t - 2.0 * STOOD_S
         if float(gone_m[(mine[:, 0] > begin_t) & (mine[:, 0] <= end_t)].sum()) < STOOD_M:
             return True
     return False
