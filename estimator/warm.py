@@ -8,6 +8,7 @@ from estimator.fusion.learned.link_correlation import NEW
 from estimator.fusion.learned.noise import single_sigma
 from estimator.fusion.learned.reach import UNTOLD, follow
 from estimator.fusion.learned.rival import predicted
+from estimator.fusion.learned.unit_rise import rises_of
 from estimator.fusion.memory.ledger import COLUMNS
 from estimator.fusion.motion.constant_velocity import free_motion
 from estimator.fusion.motion.dead_reckoning import walk
@@ -232,6 +233,7 @@ def _warm_filter() -> None:
     single_sigma(1.0, 1.0, 1.0)
     free_motion("responder", 1.0)
     prior_sigma_radps(0.0, 0.0, np.ones((1, 2)))
+    rises_of(np.ones((1, 5)), 0.0, 1.0)
     table = np.full((1, FIELDS), 0.5)
     table[0, :2] = ONE, 0.0
     newest = np.array([NEW])

@@ -8,6 +8,7 @@ from estimator.graph.dense import Indices
 from estimator.graph.kirchhoff import marginalised
 from estimator.graph.variable import TECHNOLOGIES
 from estimator.smoothing.keyframes.layout import technology_key
+from estimator.smoothing.keyframes.levelled_ways import forget_steps
 from estimator.smoothing.keyframes.losses import going_on
 from estimator.smoothing.keyframes.walks import STATES
 from estimator.smoothing.problem.gauge_turn import turned
@@ -106,4 +107,5 @@ def restart(state: FusionState) -> None:
     state.prior = Prior(tuple(keys), matrix, vector, reference, {n.index: n.pose_t for n in walking})
     state.window_t = max((n.pose_t for n in walking), default=state.newest_t)
     state.ledger.forget(state.window_t + 1e-3, ("pairs", "singles", "drops"))
-    state.ledger.forget(state.window_t - STEPS_S, ("steps", "poses"))
+    state.ledger.forget(state.window_t - STEPS_S, ("poses",))
+    forget_steps(state, state.window_t - STEPS_S)

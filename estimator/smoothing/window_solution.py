@@ -21,6 +21,7 @@ from estimator.smoothing.images.flip_ambiguity import LIVE, Effort
 from estimator.smoothing.images.likeliest_image import JudgedImages, likeliest_image
 from estimator.smoothing.images.solutions import SLACKS_M
 from estimator.smoothing.keyframes.layout import Layout
+from estimator.smoothing.keyframes.levelled_ways import forget_steps, tell_rises
 from estimator.smoothing.problem.gauge_turn import turned
 from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from estimator.smoothing.problem.solution import Solution
@@ -163,6 +164,7 @@ def _hand_back(state: FusionState, judged: JudgedImages, mountings: Sequence[Mod
     left = judged.solved.remainder(layout.length - 1)
     left = turned(left, layout, problem.pivot_m, problem.first(x), x)
     hand_back(state, layout, judged.solved, left.matrix)
+    tell_rises(state, [walk.number for walk in layout.walks if walk.way is not None])
     for name, images in alternatives_now(layout, x, [*judged.modes, *mountings]).items():
         state.nodes[name] = replace(state.nodes[name], otherwise=images)
 
@@ -177,4 +179,4 @@ def _remember(state: FusionState, judged: JudgedImages, trimmed: tuple[Prior, fl
     if trimmed is not None:
         state.prior, state.window_t = trimmed
         state.ledger.forget(state.window_t, ("pairs", "singles", "drops", "poses"))
-        state.ledger.forget(state.window_t - STEPS_S, ("steps",))
+        forget_steps(state, state.window_t - STEPS_S)

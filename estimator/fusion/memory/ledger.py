@@ -117,3 +117,16 @@ class Ledger:
         for name in () if self.complete else tables:
             rows = self.table(name)
             self.replace(name, rows[rows[:, 0] >= before_t])
+
+
+def own_rows(table: Array, number: int) -> Array:
+    """A node's rows of a table of the ledger, in order of epoch; the table itself where that is all of them.
+
+    Args:
+        table: m × c: epochs first (s), then the node's number.
+        number: of the node.
+    """
+    own = table[:, 1] == number
+    rows = table if own.all() else table[own]
+    t = rows[:, 0]
+    return rows if (t[:-1] <= t[1:]).all() else rows[np.argsort(t, kind="stable")]

@@ -13,6 +13,7 @@ from estimator.fusion.learned.calibration import UNTOLD, Told
 from estimator.fusion.learned.report_period import Cadence
 from estimator.fusion.learned.rival import Rival
 from estimator.fusion.learned.straight_legs import StraightLegs
+from estimator.fusion.learned.unit_rise import RISES
 from estimator.fusion.learned.zaru import Standing
 from estimator.fusion.memory.absolute import Absolute
 from estimator.fusion.memory.separated_unit import SeparatedUnit
@@ -68,6 +69,8 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         raw: its unit reports raw samples, which are navigated here.
         level: its unit has never reported a change of height.
         unseen_up_m2: variance of its height by the stairs that such a unit does not see.
+        rises: by what its unit's heights rise by themselves, for each metre of its way (m/m).
+        rises_before: what displacements that are forgotten have told of that (m/m), and its variance.
         climbs: distances have told that its bearer has climbed unseen by it.
         turned: its unit's frame may be turned by any angle: every window is tried with several.
         bent: the window's newest solution has its unit face elsewhere at first than was told.
@@ -115,6 +118,8 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     raw: bool = False
     level: bool = True
     unseen_up_m2: float = 0.0
+    rises: float = 0.0
+    rises_before: tuple[float, float] = (0.0, RISES**2)
     climbs: bool = False
     walk_factors: tuple[float, float] = (1.0, 1.0)
     turned: bool = False

@@ -145,6 +145,8 @@ class Step:
             self._speed_mps = gone_m / own
             if self._speed_mps > physics.GOES_MPS:
                 self._faced = e / gone_m, n / gone_m
+        rise = 0.0 if raw else self.node.rises
+        u -= rise * math.hypot(e, n)
         e, n, u = e + onward[0], n + onward[1], u + onward[2]
         self._pose_t = self._unit_t = t
         self._heading_rad, self.taken = reading.heading_rad, True
@@ -154,7 +156,9 @@ class Step:
         self.delta_m = before_e + e, before_n + n, before_u + u
         self.duration_s += duration
         self.noise = sum_of(self.noise, self._as_learned(noise, reading))
-        return Increment(pose_t, (e, n, u), noise, self._biases.take(), too_fast)
+        # The window takes off anew what heights rise by themselves.
+        told_m = e, n, u + rise * math.hypot(e, n)
+        return Increment(pose_t, told_m, noise, self._biases.take(), too_fast)
 
     def tells_again(self, reading: Displacement) -> bool:
         """Whether a displacement sums up so much that its unit has told that the rest is anybody's guess."""

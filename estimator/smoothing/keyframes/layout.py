@@ -7,7 +7,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER
+from estimator.fusion.memory.ledger import RANGE, UNTOLD_POWER, own_rows
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.prior import Key, Prior
 from estimator.fusion.memory.state import FusionState
@@ -15,6 +15,7 @@ from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 from estimator.graph.variable import DIMENSION, TECHNOLOGIES, Variable
 from estimator.smoothing.keyframes.displacement_sums import Way
+from estimator.smoothing.keyframes.levelled_ways import levelled
 from estimator.smoothing.keyframes.losses import losses_of
 from estimator.smoothing.keyframes.walks import HEADING, STATES
 
@@ -100,6 +101,7 @@ class Layout:
         way = None
         if unit:
             mine = own_rows(self.state.ledger.table("steps"), node.index)
+            mine = levelled(node, mine)
             way = Way(float(mine[0, 2]) if len(mine) else start, mine, node.walk_factors)
         return Walk(node.index, node, first, last, way, begin_t >= self.since_t)
 
@@ -212,16 +214,3 @@ def technology_key(state: FusionState, variable: Variable) -> Key:
     """The block of a technology's states, by number of its source."""
     name = UNTOLD_POWER + variable.owner if variable.kind == "rssi" else variable.owner
     return variable.kind, state.source(name)
-
-
-def own_rows(table: Array, number: int) -> Array:
-    """A node's rows of a table of the ledger, in order of epoch; the table itself where that is all of them.
-
-    Args:
-        table: m × c: epochs first (s), then the node's number.
-        number: of the node.
-    """
-    own = table[:, 1] == number
-    rows = table if own.all() else table[own]
-    t = rows[:, 0]
-    return rows if (t[:-1] <= t[1:]).all() else rows[np.argsort(t, kind="stable")]

@@ -9,10 +9,9 @@ from collections.abc import Callable
 import numpy as np
 
 from estimator.fusion import physics
-from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.ledger import RANGE, own_rows
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
-from estimator.smoothing.keyframes.layout import own_rows
 from estimator.smoothing.keyframes.losses import STEP_S, parts_of
 from estimator.smoothing.learning.slips import Slip, widen_steps
 from estimator.smoothing.problem.newton import Problem

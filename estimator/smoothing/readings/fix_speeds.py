@@ -7,9 +7,9 @@ fixes alone do not tell speeds well enough: what these are off by makes late fix
 
 import numpy as np
 
+from estimator.fusion.memory.ledger import own_rows
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
-from estimator.smoothing.keyframes.layout import own_rows
 
 AROUND_S = 4.0
 """By so many seconds before and after."""

@@ -14,12 +14,12 @@ from msgspec.structs import replace
 
 from estimator.fusion.entering.carried_bearer import HARDLY_MPS, JOLT_M, let_be_carried
 from estimator.fusion.entering.unbelieved_steps import leave_behind, unbelieve
-from estimator.fusion.memory.ledger import GIVEN, RANGE, UNSEEN
+from estimator.fusion.memory.ledger import GIVEN, RANGE, UNSEEN, own_rows
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.unreliable_unit import is_contradicted, is_noisy, leads_elsewhere
 from estimator.graph.dense import Array
-from estimator.smoothing.keyframes.layout import Walk, own_rows
+from estimator.smoothing.keyframes.layout import Walk
 from estimator.smoothing.keyframes.pauses import runs
 from estimator.smoothing.keyframes.walks import PLACES
 from estimator.smoothing.problem.newton import METRES_OFF, Problem

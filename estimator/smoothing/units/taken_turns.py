@@ -7,12 +7,12 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion.images import turned_about
-from estimator.fusion.memory.ledger import CLAIMED
+from estimator.fusion.memory.ledger import CLAIMED, own_rows
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.inertial.levelling import ANYWHERE_RAD
 from estimator.smoothing.images.heading_images import drops_along
-from estimator.smoothing.keyframes.layout import Layout, own_rows
+from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import HEADING
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution

@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.fusion.memory.ledger import COLUMNS, GIVEN, UNSEEN
+from estimator.fusion.memory.ledger import COLUMNS, GIVEN, UNSEEN, own_rows
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.inertial.levelling import ANYWHERE_RAD
-from estimator.smoothing.keyframes.layout import Layout, own_rows
+from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.pauses import PAUSE_S, runs
 from estimator.smoothing.keyframes.walks import HEADING
 from estimator.smoothing.problem.newton import METRES_OFF, Problem

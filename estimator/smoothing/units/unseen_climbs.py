@@ -10,12 +10,12 @@ import numpy as np
 from msgspec.structs import replace
 
 from estimator.fusion import physics
-from estimator.fusion.memory.ledger import RANGE
+from estimator.fusion.memory.ledger import RANGE, own_rows
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.steps import CLIMB_M2_PER_M
 from estimator.graph.dense import Array
 from estimator.smoothing.keyframes.displacement_sums import Way
-from estimator.smoothing.keyframes.layout import Layout, own_rows
+from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.walks import FLOOR, VARIANCES
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution

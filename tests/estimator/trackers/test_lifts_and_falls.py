@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from estimator.estimate import Covariance6, Vector3
-from estimator.levels import most_probable
 from estimator.measurements import AnyReading
 from estimator.measurements.altitude import Altitude, Pressure
 from estimator.measurements.displacement import Displacement
@@ -17,9 +16,8 @@ from estimator.trackers.batch import BatchSmoother
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.trackers.entry import BASE
 from tests.estimator.trackers.restarts import assert_goes_on_alike
+from tests.estimator.trackers.storeys import STOREY_M, Judged, Storeys, counted, judged
 
-STOREY_M, LOWEST, HIGHEST, ON_A_FLOOR_M = 3.5, -2, 12, 0.4
-LEVELS = [(k, str(k), STOREY_M * k) for k in range(LOWEST, HIGHEST)]
 CREW, OTHER = ("ff1", "ff2", "ff3"), "ff4"
 SECONDS, RIDES_S, WALK_S, STAIR_S = 260, 100, 70, 12
 GROUND_PA = 100_000.0
@@ -97,57 +95,32 @@ class Incident(NamedTuple):
                     )
         return told
 
-    def judged(self, name: str, second: int, up_m: float, variance_m2: float) -> tuple[bool, bool] | None:
-        """Whether what is shown is the right storey, and whether that is sure; None: he is on none."""
-        floor = round(self.height_m(name, second) / STOREY_M)
-        if abs(self.height_m(name, second) - floor * STOREY_M) > ON_A_FLOOR_M:
-            return None
-        storey = most_probable(LEVELS, up_m, variance_m2)
-        assert storey is not None
-        return storey.level == floor, storey.probability > 0.9
-
-
-class Storeys(NamedTuple):
-    """Seconds on a floor, those sure (p > 0.9) of its storey, and those sure of another one."""
-
-    seconds: int
-    right: int
-    wrong: int
-
-
-def counted(judged: Sequence[tuple[bool, bool] | None]) -> Storeys:
-    found = [one for one in judged if one is not None]
-    right = sum(fits and sure for fits, sure in found)
-    return Storeys(len(found), right, sum(sure and not fits for fits, sure in found))
+    def judged(
+        self, name: str, second: int, position_m: Vector3 | None, covariance_m2: Covariance6 | None
+    ) -> Judged:
+        """See `storeys.judged`."""
+        return judged(self.height_m(name, second), position_m, covariance_m2)
 
 
 def live(incident: Incident, seed: int, of: Sequence[str] = ()) -> Storeys:
     """What is shown while it goes on."""
-    tracker, found, coming = KirchhoffTracker(), list[tuple[bool, bool] | None](), incident.told(seed)
+    tracker, found, coming = KirchhoffTracker(), list[Judged](), incident.told(seed)
     for second in range(SECONDS + 1):
         tracker.fold([reading for reading in coming if reading.t == second])
         for e in tracker.estimates():
             if second and e.node in (of or incident.names):
-                up_m, variance_m2 = height_of(e.position_m, e.covariance_m2)
-                found.append(incident.judged(e.node, second, up_m, variance_m2))
+                found.append(incident.judged(e.node, second, e.position_m, e.covariance_m2))
     return counted(found)
 
 
 def looking_back(incident: Incident, seed: int, of: Sequence[str] = ()) -> Storeys:
     """What is shown when all is known."""
-    found = list[tuple[bool, bool] | None]()
+    found = list[Judged]()
     for name, points in BatchSmoother().smooth(incident.told(seed)).items():
         for point in points:
             if name in (of or incident.names) and point.t == int(point.t):
-                up_m, variance_m2 = height_of(point.position_m, point.covariance_m2)
-                found.append(incident.judged(name, int(point.t), up_m, variance_m2))
+                found.append(incident.judged(name, int(point.t), point.position_m, point.covariance_m2))
     return counted(found)
-
-
-def height_of(position_m: Vector3 | None, covariance_m2: Covariance6 | None) -> tuple[float, float]:
-    assert position_m is not None
-    assert covariance_m2 is not None
-    return position_m[2], covariance_m2[5]
 
 
 def notices(incident: Incident, seed: int) -> list[str]:
