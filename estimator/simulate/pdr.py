@@ -21,6 +21,7 @@ class PdrUnit:
         bias_radps: what its gyro turns the frame by, each second (rad/s).
         heading_walk_rad: random walk of the heading error, each period in which the foot steps (rad).
         scale: it reports the true displacement divided by this.
+        rises: its heights rise by so much for each metre of level way (m/m).
         noise_m: standard deviation per axis and report while moving (m).
         rest_noise_m: the same while the foot stands (m).
         heading_noise_rad: standard deviation of the reported heading (rad).
@@ -31,6 +32,7 @@ class PdrUnit:
     bias_radps: float = 0.0
     heading_walk_rad: float = 0.004
     scale: float = 1.0
+    rises: float = 0.0
     noise_m: float = 0.03
     rest_noise_m: float = 0.002
     heading_noise_rad: float = 0.01
@@ -57,7 +59,7 @@ def reckon(truth: TrueTrack, unit: PdrUnit, rng: np.random.Generator) -> DeadRec
     """What `unit` on a walker with `truth` reports.
 
     The frame's error ψ starts at a draw of `heading_sigma_rad` and drifts by bias and random walk;
-    with p' = p + s·Rz(ψ)·δ the report is δ = Rz(-ψ)·Δp / s + noise.
+    with p' = p + s·Rz(ψ)·δ the report is δ = Rz(-ψ)·Δp / s + noise, and its heights rise with the way.
 
     Args:
         truth: the walker's true track.
@@ -75,7 +77,7 @@ def reckon(truth: TrueTrack, unit: PdrUnit, rng: np.random.Generator) -> DeadRec
         [
             np.cos(psi) * true[:, 0] + np.sin(psi) * true[:, 1],
             -np.sin(psi) * true[:, 0] + np.cos(psi) * true[:, 1],
-            true[:, 2],
+            true[:, 2] + unit.rises * np.hypot(true[:, 0], true[:, 1]),
         ],
         axis=1,
     )

@@ -18,6 +18,8 @@ START_SIGMA_M = 0.5
 HEADING_SIGMA_RAD = 0.1
 GYRO_BIAS_RADPS = 0.0012
 """A good MEMS gyro after a minute at rest: 0.07 °/s, one sigma."""
+RISES = 0.01
+"""Boots rise or fall by so much for each metre of way, one sigma: ZUPT-aided units err by 0.3 to 1 %."""
 
 IN_THE_OPEN = Site()
 IN_THE_OFFICE = Site(walls_between, floors_between)
@@ -52,6 +54,8 @@ def typical_unit(rng: np.random.Generator) -> PdrUnit:
         heading_sigma_rad=HEADING_SIGMA_RAD,
         bias_radps=float(rng.normal(0.0, GYRO_BIAS_RADPS)),
         scale=float(rng.normal(1.0, 0.02)),
+        # A stream of its own: how heights rise changes nothing else.
+        rises=float(rng.spawn(1)[0].normal(0.0, RISES)),
     )
 
 

@@ -75,8 +75,8 @@ def forget_steps(state: FusionState, before_t: float) -> None:
 
 
 def _rises(node: NodeState, steps: Array) -> bool:
-    """Whether a unit measures heights, and what it tells of them is not levelled elsewhere."""
-    return not node.raw and bool(steps[:, UP].any())
+    """Whether somebody walks whose unit measures heights, which are not levelled elsewhere."""
+    return node.role == "responder" and not node.raw and bool(steps[:, UP].any())
 
 
 def _told(node: NodeState, steps: Array) -> Rises:

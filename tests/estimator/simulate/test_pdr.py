@@ -1,5 +1,7 @@
 """A simulated unit errs as it is told to."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -46,6 +48,13 @@ def test_turning_a_report_by_the_frames_error_gives_the_true_displacement(truth:
     )
     assert np.allclose(1.1 * np.cumsum(turned, axis=0), truth.at(dead.t_s))
     assert np.allclose(dead.heading_rad + psi, truth.heading_at(dead.t_s))
+
+
+def test_heights_rise_with_the_way(truth: TrueTrack) -> None:
+    dead = reckon(truth, replace(PERFECT, rises=0.02), np.random.default_rng(0))
+    told_m = np.cumsum(dead.delta_m, axis=0)
+    assert np.allclose(told_m[:, :2], truth.at(dead.t_s)[:, :2])
+    assert told_m[-1, 2] == pytest.approx(3.0 + 0.02 * (50.0 + 30.0))
 
 
 def test_noise_has_the_stated_spread_while_moving_and_while_standing(truth: TrueTrack) -> None:

@@ -45,6 +45,11 @@ def test_what_is_level_already_stays_what_it_is() -> None:
     np.testing.assert_array_equal(levelled(FF1, unseen), unseen)
 
 
+def test_who_flies_climbs_as_he_says() -> None:
+    rows = steps(RISES)
+    assert levelled(replace(FF1, role="uav"), rows) is rows
+
+
 def test_what_is_forgotten_has_told_how_a_unit_rises() -> None:
     state = fused(steps(RISES))
     forget_steps(state, 200.0)
