@@ -26,7 +26,7 @@ class Legs(NamedTuple):
         variance: of that, n.
         way_m: how long they are, n (m).
         turns: their bearers have turned round on them, or since the one before, n.
-        of_row: for each displacement the leg that it is part of, or −1 − the newest one before it.
+        of_row: for each displacement the leg that it is part of, or −1 − how many there are before it.
     """
 
     rise: Array
