@@ -60,14 +60,12 @@ class Rises(NamedTuple):
         mean: by now, without what the newest legs rose beside it (m/m).
         variance: of that.
         doubt_m: how unsure it is what the ground has climbed: a standard deviation (m).
-        legs: so many have told.
     """
 
     of_rows: Array
     mean: float
     variance: float
     doubt_m: float
-    legs: int
 
 
 @njit(cache=True)
@@ -83,7 +81,7 @@ def rises_of(moved: Array, mean: float, variance: float) -> Rises:
     legs, found = legs_of(moved), np.full(len(moved), mean)
     n, k = len(legs.rise), len(SLOPES_GRID)
     if n == 0:
-        return Rises(found, mean, variance, 0.0, 0)
+        return Rises(found, mean, variance, 0.0)
     # Of each rise and slope: how likely, and first and second moments of what the ground has climbed.
     carried = np.zeros((3, RISES_COUNT, k))
     known = _normal(mean, variance)
@@ -121,7 +119,7 @@ def rises_of(moved: Array, mean: float, variance: float) -> Rises:
         leg = legs.of_row[i]
         found[i] = legs.rise[leg] - ground[leg] if leg >= 0 else rise[max(-2 - leg, 0)]
     doubt_m = math.sqrt(max(climbed_m2 - climbed_m**2, 0.0))
-    return Rises(found, newest, square - newest**2 + RISES_STEP**2 / 12.0, doubt_m, n)
+    return Rises(found, newest, square - newest**2 + RISES_STEP**2 / 12.0, doubt_m)
 
 
 @njit(cache=True)

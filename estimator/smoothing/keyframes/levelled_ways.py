@@ -7,12 +7,12 @@ from msgspec.structs import replace
 
 from estimator.fusion.learned.level_legs import STRIDE_M
 from estimator.fusion.learned.unit_rise import Rises, rises_of
-from estimator.fusion.memory.ledger import GIVEN, UNSEEN, own_rows
+from estimator.fusion.memory.ledger import COLUMNS, GIVEN, UNSEEN, own_rows
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 
-UP, UP_M2 = 5, 7
+UP, UP_M2 = (COLUMNS["steps"].index(name) for name in ("u", "up2"))
 """Columns of the ledger's `steps`."""
 SOME_S = 60.0
 """So much is forgotten at a time: what is cut in pieces has no legs."""

@@ -89,7 +89,7 @@ SEARCH = np.concatenate([along(250), stair(1), along(150), stair(2), along(100),
 @pytest.mark.parametrize("altimeter", [False, True])
 @pytest.mark.parametrize("rises", [-0.04, 0.0, 0.02, 0.04])
 def test_who_walks_far_on_a_floor_has_not_left_it(rises: float, altimeter: bool) -> None:
-    """By 4 cm a metre he was shown four storeys up, and sure of it."""
+    """By 4 cm a metre he was surely on a wrong storey half of the time, with an altimeter a third of it."""
     walker = Walker(SEARCH, rises, altimeter)
     shown, back = walker.live(1), walker.looking_back(1)
     assert shown.wrong == 0

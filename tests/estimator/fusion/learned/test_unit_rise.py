@@ -116,7 +116,7 @@ def test_it_is_what_a_hidden_markov_model_of_whole_matrices_tells() -> None:
         return float(weight.sum() / plain.sum())
 
     n = len(fits)
-    assert n == len(legs.rise) == told.legs > 2
+    assert n > 2
     climbs = [slope * way_m for way_m in legs.way_m]
     mean_m = sum(expected((i, climbs[i])) for i in range(n))
     square_m2 = sum(expected((i, climbs[i]), (j, climbs[j])) for i in range(n) for j in range(n))
