@@ -50,6 +50,13 @@ def _slope_shares() -> Array:
 
 
 SHARES = _slope_shares()
+ANYTHING = np.exp(-0.5 * (RISES_GRID / RISES) ** 2)
+"""How likely each rise is of a unit of which nothing is known."""
+ANYTHING /= ANYTHING.sum()
+OF_SLOPES = np.rint((SLOPES_GRID - SLOPES_GRID[0]) / RISES_STEP).astype(np.intp)
+"""Which of `SUMS` each slope is with the least rise; with each other one it is one more."""
+SUMS = SLOPES_GRID[0] + RISES_GRID[0] + RISES_STEP * np.arange(RISES_COUNT + OF_SLOPES[-1])
+"""What a leg may rise by: all sums of a rise and a slope, as slopes are whole steps of rises."""
 
 
 class Rises(NamedTuple):
@@ -83,29 +90,26 @@ def rises_of(moved: Array, mean: float, variance: float) -> Rises:
     if n == 0:
         return Rises(found, mean, variance, 0.0)
     # Of each rise and slope: how likely, and first and second moments of what the ground has climbed.
-    carried = np.zeros((3, RISES_COUNT, k))
+    carried, likely = np.zeros((3, RISES_COUNT, k)), _likely(legs)
     known = _normal(mean, variance)
     for r in range(RISES_COUNT):
         for c in range(k):
             carried[0, r, c] = known[r] * INCLINED_P * SHARES[c]
         carried[0, r, k // 2] = known[r] * (1.0 - INCLINED_P)
-    filtered = np.empty((n, RISES_COUNT, k))
+    filtered, room = np.empty((n, RISES_COUNT, k)), np.empty((RISES_COUNT, k))
     for i in range(n):
         if i > 0:
-            carried = _onward(carried, legs.turns[i])
+            _go_onward(carried, legs.turns[i], room)
         total = 0.0
         for r in range(RISES_COUNT):
             for c in range(k):
-                likely, climb_m = _likely(legs, i, r, c), SLOPES_GRID[c] * legs.way_m[i]
+                each, climb_m = likely[i, r + OF_SLOPES[c]], SLOPES_GRID[c] * legs.way_m[i]
                 one, first = carried[0, r, c], carried[1, r, c]
-                carried[2, r, c] = likely * (carried[2, r, c] + 2.0 * climb_m * first + climb_m**2 * one)
-                carried[1, r, c] = likely * (first + climb_m * one)
-                carried[0, r, c] = likely * one
-                total += likely * one
-        for number in range(3):
-            for r in range(RISES_COUNT):
-                for c in range(k):
-                    carried[number, r, c] /= total
+                carried[2, r, c] = each * (carried[2, r, c] + 2.0 * climb_m * first + climb_m**2 * one)
+                carried[1, r, c] = each * (first + climb_m * one)
+                carried[0, r, c] = each * one
+                total += each * one
+        carried /= total
         filtered[i] = carried[0]
     newest, square, climbed_m, climbed_m2 = 0.0, 0.0, 0.0, 0.0
     for r in range(RISES_COUNT):
@@ -114,7 +118,7 @@ def rises_of(moved: Array, mean: float, variance: float) -> Rises:
             square += carried[0, r, c] * RISES_GRID[r] ** 2
             climbed_m += carried[1, r, c]
             climbed_m2 += carried[2, r, c]
-    rise, ground = _looking_back(filtered, legs)
+    rise, ground = _looking_back(filtered, legs, likely)
     for i in range(len(moved)):
         leg = legs.of_row[i]
         found[i] = legs.rise[leg] - ground[leg] if leg >= 0 else rise[max(-2 - leg, 0)]
@@ -123,10 +127,13 @@ def rises_of(moved: Array, mean: float, variance: float) -> Rises:
 
 
 @njit(cache=True)
-def _likely(legs: Legs, i: int, r: int, c: int) -> float:
-    """How likely a leg is, by its number, of a rise and a slope, by their numbers, but for a factor."""
-    off = legs.rise[i] - RISES_GRID[r] - SLOPES_GRID[c]
-    return math.exp(-0.5 * off * off / legs.variance[i]) + UNLIKELY
+def _likely(legs: Legs) -> Array:
+    """How likely each leg is of each sum of a rise and a slope, but for a factor, n × sums."""
+    found = np.empty((len(legs.rise), len(SUMS)))
+    for i in range(len(found)):
+        for s in range(len(SUMS)):
+            found[i, s] = math.exp(-0.5 * (legs.rise[i] - SUMS[s]) ** 2 / legs.variance[i]) + UNLIKELY
+    return found
 
 
 @njit(cache=True)
@@ -142,7 +149,7 @@ def _normal(mean: float, variance: float) -> Array:
 
 
 @njit(cache=True)
-def _looking_back(filtered: Array, legs: Legs) -> tuple[Array, Array]:
+def _looking_back(filtered: Array, legs: Legs, likely: Array) -> tuple[Array, Array]:
     """Mean rise and mean slope of the ground of each leg, by all of them, n each (m/m)."""
     n, k = len(filtered), filtered.shape[2]
     rise, ground = np.zeros(n), np.zeros(n)
@@ -155,7 +162,7 @@ def _looking_back(filtered: Array, legs: Legs) -> tuple[Array, Array]:
                 rise[i] += both * RISES_GRID[r]
                 ground[i] += both * SLOPES_GRID[c]
                 total += both
-                after[r, c] *= _likely(legs, i, r, c)
+                after[r, c] *= likely[i, r + OF_SLOPES[c]]
                 most = max(most, after[r, c])
         rise[i], ground[i] = rise[i] / total, ground[i] / total
         for r in range(RISES_COUNT):
@@ -166,41 +173,39 @@ def _looking_back(filtered: Array, legs: Legs) -> tuple[Array, Array]:
 
 
 @njit(cache=True)
-def _onward(carried: Array, turns: bool) -> Array:
-    """What is carried from a leg to the next one, 3 × rises × slopes."""
-    k, found, anything = carried.shape[2], np.zeros_like(carried), _normal(0.0, RISES**2)
+def _go_onward(carried: Array, turns: bool, room: Array) -> None:
+    """Carry on from a leg to the next one, in place, 3 × rises × slopes; `room`: rises × slopes."""
+    k, last, of_slopes = carried.shape[2], RISES_COUNT - 1, np.empty(carried.shape[2])
     stays, returns, levels = _passages(turns)
+    keeps = 1.0 - 2.0 * CHANGED_P - REPLACED_P
     for number in range(3):
-        of_slopes = np.zeros(k)
+        of_slopes[:] = 0.0
         for r in range(RISES_COUNT):
-            total, level = 0.0, carried[number, r, k // 2]
+            here, total = carried[number, r], 0.0
             for c in range(k):
-                total += carried[number, r, c]
+                total += here[c]
             for c in range(k):
-                moved = SETS_OUT_P * SHARES[c] * total
-                if c == k // 2:
-                    moved += (1.0 - SETS_OUT_P) * level + levels * (total - level)
-                else:
-                    moved += stays * carried[number, r, c] + returns * carried[number, r, k - 1 - c]
-                of_slopes[c] += moved
-                found[number, r, c] += (1.0 - 2.0 * CHANGED_P - REPLACED_P) * moved
-                found[number, min(r + 1, RISES_COUNT - 1), c] += CHANGED_P * moved
-                found[number, max(r - 1, 0), c] += CHANGED_P * moved
+                room[r, c] = SETS_OUT_P * SHARES[c] * total + stays * here[c] + returns * here[k - 1 - c]
+            level = here[k // 2]
+            room[r, k // 2] = (1.0 - SETS_OUT_P) * level + levels * (total - level)
+            for c in range(k):
+                of_slopes[c] += room[r, c]
         for r in range(RISES_COUNT):
+            up, down, replaced = min(r + 1, last), max(r - 1, 0), REPLACED_P * ANYTHING[r]
             for c in range(k):
-                found[number, r, c] += REPLACED_P * anything[r] * of_slopes[c]
-    return found
+                beside = CHANGED_P * (room[up, c] + room[down, c])
+                carried[number, r, c] = keeps * room[r, c] + beside + replaced * of_slopes[c]
 
 
 @njit(cache=True)
 def _back(after: Array, turns: bool) -> Array:
-    """How likely what comes after is, of each rise and slope of the leg before: `_onward`, transposed."""
-    k, found, anything = after.shape[1], np.empty_like(after), _normal(0.0, RISES**2)
+    """How likely what comes after is, of each rise and slope of the leg before: `_go_onward`, transposed."""
+    k, found = after.shape[1], np.empty_like(after)
     stays, returns, levels = _passages(turns)
     moved, replaced = np.empty(k), np.zeros(k)
     for r in range(RISES_COUNT):
         for c in range(k):
-            replaced[c] += anything[r] * after[r, c]
+            replaced[c] += ANYTHING[r] * after[r, c]
     for r in range(RISES_COUNT):
         up, down, sets_out = min(r + 1, RISES_COUNT - 1), max(r - 1, 0), 0.0
         for c in range(k):

@@ -1,6 +1,7 @@
 """Ways of units without what their heights rise by themselves (decision 0128)."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from msgspec.structs import replace
@@ -18,6 +19,8 @@ SOME_S = 60.0
 """So much is forgotten at a time: what is cut in pieces has no legs."""
 MUCH, SIGMAS = 0.02, 3.0
 """By how much heights rise at least (m/m), and how sure that is, where it is told."""
+KNOWN = 64
+"""Of so many units what they rise by is kept."""
 
 
 def levelled(node: NodeState, steps: Array) -> Array:
@@ -82,4 +85,10 @@ def _rises(node: NodeState, steps: Array) -> bool:
 def _told(node: NodeState, steps: Array) -> Rises:
     seen = steps[:, GIVEN] != UNSEEN
     moved = np.column_stack([steps[:, 3 : UP + 1], steps[:, UP_M2], seen])
-    return rises_of(moved, *node.rises_before)
+    return _known(moved.tobytes(), *node.rises_before)
+
+
+@lru_cache(KNOWN)
+def _known(moved: bytes, mean: float, variance: float) -> Rises:
+    """See `rises_of`: each hypothesis of a window asks the same, and so does who hands it back."""
+    return rises_of(np.frombuffer(moved).reshape(-1, 5).copy(), mean, variance)

@@ -30,6 +30,8 @@ GLITCH, GLITCH_M, GLITCHES = 0.02, 3.0, 2
 """How often a reading is odd by itself, and by how much; and how many make one difference."""
 FLOOR = 2
 """Which of the excesses, none counted as one, is a floor's: half a metre."""
+NEVER = 1e-9
+"""No excess is rarer than this."""
 ODD = 6.0
 """In sigmas: one that differs by more does not tell how noisy a radio is."""
 FEW, COUNTED = 50, 20.0
@@ -128,21 +130,23 @@ def _expectation_maximisation(
     m, n = len(before), len(rungs)
     odds, share = np.zeros((m, n)), counts / counts.sum()
     told, onward, back, level = np.zeros((m, n)), np.zeros((m, n)), np.zeros((m, n)), np.empty(n)
+    without = np.log(np.maximum(1.0 - floor, NEVER))
     for _ in range(ROUNDS):
         shapes = _shapes(sigma, rungs)
         for r in range(n):
             # What scatters less than the radio itself is not seen.
-            level[r] = math.log(_usual(share, 0.0, r)) if r == 0 or rungs[r] >= sigma else -math.inf
+            level[r] = math.log(share[r]) if r == 0 or rungs[r] >= sigma else -math.inf
         for k in felt:
             for r in range(n):
                 if level[r] > -math.inf:
-                    told[k, r] = EACH * math.log(_density(off[k], shapes[r]))
+                    told[k, r] = EACH * _log_density(off[k], shapes[r])
         _sum_along_links(before, kept, told, onward, back)
         for i in range(m):
             most = -math.inf
             for r in range(n):
-                steep = floor[i] > 0.0 and level[r] > -math.inf
-                usual = math.log(_usual(share, floor[i], r)) if steep else level[r]
+                usual = without[i] + level[r]
+                if r == FLOOR and level[r] > -math.inf:
+                    usual = math.log(_usual(share, floor[i], r))
                 odds[i, r] = onward[i, r] + back[i, r] + usual
                 most = max(most, odds[i, r])
             total = 0.0
@@ -154,7 +158,8 @@ def _expectation_maximisation(
         common, squares, clear = counts.copy(), COUNTED * sigma**2, COUNTED
         for k in felt:
             for r in range(n):
-                common[r] += odds[k, r] * (1.0 - floor[k]) * share[r] / _usual(share, floor[k], r)
+                beside = 1.0 if r != FLOOR else (1.0 - floor[k]) * share[r] / _usual(share, floor[k], r)
+                common[r] += odds[k, r] * beside
             if abs(off[k]) < ODD * sigma:
                 squares += odds[k, 0] * off[k] ** 2
                 clear += odds[k, 0]
@@ -166,15 +171,15 @@ def _expectation_maximisation(
     for k in felt:
         density = 0.0
         for r in range(n):
-            density += _usual(share, floor[k], r) * _density(off[k], shapes[r])
-        likely += EACH * math.log(density)
+            density += _usual(share, floor[k], r) * math.exp(_log_density(off[k], shapes[r]))
+        likely += EACH * math.log(max(density, 1e-300))
     return odds, likely
 
 
 @njit(cache=True)
 def _usual(share: Array, floor: float, rung: int) -> float:
     """How common an excess is where there is a floor between with probability `floor`, and never nil."""
-    return float(max((1.0 - floor) * share[rung] + (floor if rung == FLOOR else 0.0), 1e-9))
+    return float(max((1.0 - floor) * share[rung] + (floor if rung == FLOOR else 0.0), NEVER))
 
 
 @njit(cache=True, error_model="numpy")
@@ -212,22 +217,23 @@ def _differences(link: Integers, alike: Array, residual: Array) -> tuple[Integer
 
 @njit(cache=True)
 def _shapes(sigma: float, rungs: Array) -> Array:
-    """Of differences between readings with each excess: height and half the precision, twice, rungs × 4.
+    """What differences between readings with each excess are like, rungs × 4.
 
-    An excess scatters by as much; now and then a reading is odd by itself.
+    Height of the usual ones and of the odd ones; half the precision of these, and what that of the usual ones
+    is more. An excess scatters by as much; now and then a reading is odd by itself.
     """
     found = np.empty((len(rungs), 4))
     for r in range(len(rungs)):
         usual = sigma * sigma + rungs[r] * rungs[r]
         odd = usual + GLITCH_M * GLITCH_M
-        found[r, 0], found[r, 1] = (1.0 - GLITCHES * GLITCH) / math.sqrt(usual), 0.5 / usual
-        found[r, 2], found[r, 3] = GLITCHES * GLITCH / math.sqrt(odd), 0.5 / odd
+        found[r, 0] = (1.0 - GLITCHES * GLITCH) / math.sqrt(usual)
+        found[r, 1], found[r, 2] = GLITCHES * GLITCH / math.sqrt(odd), 0.5 / odd
+        found[r, 3] = 0.5 / usual - found[r, 2]
     return found
 
 
 @njit(cache=True, forceinline=True)
-def _density(off: float, shape: Array) -> float:
-    """Of a difference, up to a factor; never nil."""
+def _log_density(off: float, shape: Array) -> float:
+    """Log density of a difference, up to a constant: no difference is so large that it is without bounds."""
     squared = off * off
-    density = shape[0] * math.exp(-shape[1] * squared) + shape[2] * math.exp(-shape[3] * squared)
-    return float(max(density, 1e-300))
+    return float(math.log(shape[1] + shape[0] * math.exp(-shape[3] * squared)) - shape[2] * squared)

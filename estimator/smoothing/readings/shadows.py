@@ -29,8 +29,9 @@ from estimator.smoothing.readings.stacked import StackedReadings
 
 LEAST_DB2 = 0.25
 """What shares less than half a dB is not asked."""
-SEARCHED = 4
-"""So often a shadow is found anew by how likely its powers are to be outliers by then."""
+SEARCHED, FOUND_DB = 4, 0.01
+"""So often at most a shadow is found anew by how likely its powers are to be outliers by then; it is found
+where that changes it by less, for each time changes it ten times less than the one before."""
 
 
 class Shadows(NamedTuple):
@@ -165,7 +166,7 @@ def take_shadows(shared: SharedErrors, sigma: Array, noise: Array, residual: Arr
         own, taken = shared.own[one], 0.0
         certain = 1.0 / sigma[own] ** 2
         for _ in range(SEARCHED):
-            weight, pull = certain, 0.0
+            weight, pull, before = certain, 0.0, taken
             for at in range(shared.ends[one], shared.ends[one + 1]):
                 row = shared.rows[at]
                 outliers, shift, spread = noise[row]
@@ -173,6 +174,8 @@ def take_shadows(shared: SharedErrors, sigma: Array, noise: Array, residual: Arr
                 weight += known
                 pull += known * (off + taken)
             taken = pull / weight
+            if abs(taken - before) < FOUND_DB:
+                break
         for at in range(shared.ends[one], shared.ends[one + 1]):
             residual[shared.rows[at]] -= taken
         residual[own] = -taken

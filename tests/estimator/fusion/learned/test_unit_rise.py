@@ -29,6 +29,12 @@ def climbed_m(moved: Array) -> float:
     return float((moved[:, 2] - rises_of(moved, 0.0, RISES**2).of_rows * gone_m).sum())
 
 
+def test_slopes_are_whole_steps_of_rises() -> None:
+    """So that a leg's rise is looked up by the sum of both."""
+    sums = unit_rise.SUMS[np.arange(len(RISES_GRID))[:, None] + unit_rise.OF_SLOPES]
+    np.testing.assert_allclose(sums, RISES_GRID[:, None] + SLOPES_GRID, atol=1e-12)
+
+
 @settings(max_examples=30)
 @given(st.floats(-0.06, 0.06), st.integers(0, 1000))
 def test_what_a_unit_rises_by_on_the_level_is_found(rises: float, seed: int) -> None:
