@@ -12,7 +12,7 @@ from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import SURE, outside
 
 PACE_M = (0.8, 0.3)
-EAST = (0.8, 0.0, 0.0)
+EAST = (0.5, 0.0, 0.0)
 Place = tuple[float, float]
 BASE = Node(t=0.0, node="base", role="base", position_m=(0.0, 0.0, 0.0))
 
