@@ -9,6 +9,8 @@ from estimator.simulate.base import FloatArray, TrueTrack
 
 REST_M = 0.02
 """Below this displacement in one period the foot stands still, and the zero-velocity update holds."""
+CRAWLS_MPS = 0.6
+"""Who goes more slowly crawls."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +24,7 @@ class PdrUnit:
         heading_walk_rad: random walk of the heading error, each period in which the foot steps (rad).
         scale: it reports the true displacement divided by this.
         rises: its heights rise by so much for each metre of level way (m/m).
+        crawls: it tells this share of what its bearer crawls.
         noise_m: standard deviation per axis and report while moving (m).
         rest_noise_m: the same while the foot stands (m).
         heading_noise_rad: standard deviation of the reported heading (rad).
@@ -33,6 +36,7 @@ class PdrUnit:
     heading_walk_rad: float = 0.004
     scale: float = 1.0
     rises: float = 0.0
+    crawls: float = 1.0
     noise_m: float = 0.03
     rest_noise_m: float = 0.002
     heading_noise_rad: float = 0.01
@@ -59,7 +63,8 @@ def reckon(truth: TrueTrack, unit: PdrUnit, rng: np.random.Generator) -> DeadRec
     """What `unit` on a walker with `truth` reports.
 
     The frame's error ψ starts at a draw of `heading_sigma_rad` and drifts by bias and random walk;
-    with p' = p + s·Rz(ψ)·δ the report is δ = Rz(-ψ)·Δp / s + noise, and its heights rise with the way.
+    with p' = p + s·Rz(ψ)·δ the report is δ = Rz(-ψ)·Δp / s + noise; its heights rise with the way, and of a
+    crawl it tells a share.
 
     Args:
         truth: the walker's true track.
@@ -81,6 +86,8 @@ def reckon(truth: TrueTrack, unit: PdrUnit, rng: np.random.Generator) -> DeadRec
         ],
         axis=1,
     )
+    crawls = np.linalg.norm(true, axis=1) < CRAWLS_MPS * unit.period_s
+    delta[:, :2] *= np.where(crawls, unit.crawls, 1.0)[:, None]
     sigma = np.where(np.linalg.norm(true, axis=1) < REST_M, unit.rest_noise_m, unit.noise_m)
     delta = delta / unit.scale + rng.normal(0.0, 1.0, (n, 3)) * sigma[:, None]
     heading = truth.heading_at(ends) - psi + rng.normal(0.0, unit.heading_noise_rad, n)

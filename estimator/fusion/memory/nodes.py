@@ -10,6 +10,7 @@ from estimator.estimate import Covariance6, Vector3
 from estimator.fusion import physics
 from estimator.fusion.images import Alternative
 from estimator.fusion.learned.calibration import UNTOLD, Told
+from estimator.fusion.learned.gait import Gait
 from estimator.fusion.learned.report_period import Cadence
 from estimator.fusion.learned.rival import Rival
 from estimator.fusion.learned.straight_legs import StraightLegs
@@ -69,6 +70,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         raw: its unit reports raw samples, which are navigated here.
         level: its unit has never reported a change of height.
         unseen_up_m2: variance of its height by the stairs that such a unit does not see.
+        gait: how its bearer goes, by its unit.
         rises: by what its unit's heights rise by themselves, for each metre of its way (m/m).
         rises_before: what displacements that are forgotten have told of that (m/m), and its variance.
         climbs: distances have told that its bearer has climbed unseen by it.
@@ -118,6 +120,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     raw: bool = False
     level: bool = True
     unseen_up_m2: float = 0.0
+    gait: Gait = Gait()
     rises: float = 0.0
     rises_before: tuple[float, float] = (0.0, RISES**2)
     climbs: bool = False

@@ -10,6 +10,7 @@ from numba import njit
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
+from estimator.fusion.learned.gait import KEPT, RENEWED
 from estimator.fusion.memory.ledger import UNSEEN
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -94,6 +95,10 @@ def walked(steps: Array, x: Array) -> tuple[Indices, Array, Array, Array]:
             rows[i, c] = int(steps[i, c // 3]) + c % 3
             states[i, c], noise[i, c, c] = x[rows[i, c]], steps[i, 6 + c]
     moved = move(states, steps[:, 2:5], steps[:, 5])
+    for i in range(g):
+        if noise[i, 5, 5] > RENEWED:
+            moved.transition[i, 5, 5] = KEPT
+            moved.state[i, 5] *= KEPT
     return rows, moved.state, moved.transition, noise
 
 

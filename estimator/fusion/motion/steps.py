@@ -7,6 +7,7 @@ from msgspec.structs import replace
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
+from estimator.fusion.learned.gait import SHUFFLES_MPS
 from estimator.fusion.learned.straight_legs import StraightLegs
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m
@@ -80,7 +81,7 @@ class Step:
         self._way_m, self._faced, self._biases = node.way_m, node.faced, ToldBiases(node)
         self._level, self._unseen_up_m2 = node.level, node.unseen_up_m2
         self._marks: list[Mark] = list(node.trail or ((node.pose_t, 0.0, 0.0, 0.0),))
-        self._whole_t, self._missed_s = node.whole_t, node.missed_s
+        self._whole_t, self._missed_s, self._gait = node.whole_t, node.missed_s, node.gait
         self.taken = False
 
     @property
@@ -139,6 +140,8 @@ class Step:
             noise = sum_of(noise, (unseen, unseen, 0.0, 0.0, 0.0, 0.0))
         if sets_off:
             noise = sum_of(noise, SET_OFF)
+        if not (raw or too_fast) and length > SHUFFLES_MPS * own > 0.0 and self.node.role == "responder":
+            noise = sum_of(noise, self._change_gait(length, own))
         self._biases.walk(start, t, (e, n), noise[3] * max(self.node.walk_factors[1], 1.0))
         if own > 0.0:
             gone_m = math.hypot(e, n)
@@ -159,6 +162,11 @@ class Step:
         # The window takes off anew what heights rise by themselves.
         told_m = e, n, u + rise * math.hypot(e, n)
         return Increment(pose_t, told_m, noise, self._biases.take(), too_fast)
+
+    def _change_gait(self, gone_m: float, span_s: float) -> Noise:
+        """Variances that a displacement adds because its bearer begins to crawl with it, or to walk again."""
+        before, self._gait = self._gait, self._gait.after(gone_m, span_s)
+        return self._gait.doubt() if self._gait.changes(before) else NOTHING
 
     def tells_again(self, reading: Displacement) -> bool:
         """Whether a displacement sums up so much that its unit has told that the rest is anybody's guess."""
@@ -240,6 +248,7 @@ class Step:
             unseen_up_m2=self._unseen_up_m2,
             whole_t=self._whole_t,
             missed_s=self._missed_s,
+            gait=self._gait,
         )
 
 

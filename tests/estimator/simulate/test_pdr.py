@@ -60,6 +60,13 @@ def test_heights_rise_with_the_way(truth: TrueTrack) -> None:
     assert np.allclose(off_m[:, 2], 0.02 * way_m)
 
 
+def test_of_a_crawl_a_share_is_told_and_all_of_a_walk() -> None:
+    legs = [Leg((20.0, 0.0, 0.0), 1.0), Leg((26.0, 0.0, 0.0), 0.4)]
+    crawls = walk((0.0, 0.0, 0.0), legs, (), end_s=40.0)
+    dead = reckon(crawls, replace(PERFECT, crawls=0.8), np.random.default_rng(0))
+    assert dead.delta_m[:, 0].sum() == pytest.approx(20.0 + 0.8 * 6.0, abs=0.3)
+
+
 def test_noise_has_the_stated_spread_while_moving_and_while_standing(truth: TrueTrack) -> None:
     unit = PdrUnit(
         heading_sigma_rad=0.0, heading_walk_rad=0.0, noise_m=0.05, rest_noise_m=0.004, heading_noise_rad=0.02

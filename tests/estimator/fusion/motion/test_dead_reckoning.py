@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from estimator.fusion.learned.gait import KEPT
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.dead_reckoning import drift_units, walk, walked
 from estimator.fusion.tick import fold_tick
@@ -43,6 +44,19 @@ def test_units_walk_in_one_transition_as_any_moving_nodes_do() -> None:
     assert one.reference == pytest.approx(other.reference, abs=1e-12)
     assert one.information == pytest.approx(other.information, rel=1e-12)
     assert one.solve() == pytest.approx(other.solve(), abs=1e-9)
+
+
+def test_whose_gait_changes_has_another_scale() -> None:
+    """What was known of the one before tells next to nothing of it, and the covariance says so as well."""
+    graph, scale = crew(), 5
+    steps, before = steps_of(graph), graph.covariance()
+    steps[0, 11] = 0.1**2
+    was = graph.solve()[scale]
+    assert walk(steps, *graph.storage(), graph.size, np.empty(12, dtype=np.intp), np.empty((12, 12)))
+    assert graph.solve()[scale] == pytest.approx(KEPT * was, abs=1e-9)
+    after = graph.covariance()
+    assert after[scale, scale] == pytest.approx(0.1**2 + KEPT**2 * before[scale, scale])
+    assert after[scale + 6, scale + 6] == pytest.approx(before[scale + 6, scale + 6] + 1e-5)
 
 
 def test_a_transition_that_rounding_has_spoilt_is_left_to_be_done() -> None:

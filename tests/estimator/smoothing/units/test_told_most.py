@@ -16,7 +16,7 @@ from estimator.smoothing.units.told_most import told_most
 from tests.estimator.smoothing.windows import entered, fused, problem_of
 
 AFAR_M = ((30.0, 40.0), (30.0, -40.0), (-10.0, 40.0))
-SECONDS, FROM_S = 40, 20
+SECONDS, FROM_S, PACE_M = 40, 20, 0.8
 
 
 def walked(wrong_m: float) -> Problem:
@@ -27,10 +27,10 @@ def walked(wrong_m: float) -> Problem:
         readings.append(Node(t=0.0, node=f"r{k}", role="anchor", position_m=(east, north, 0.0), sigma_m=0.1))
     for second in range(1, SECONDS + 1):
         t = float(second)
-        readings.append(Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=(0.5, 0.0, 0.0)))
+        readings.append(Displacement(t=t, from_t=t - 1.0, node="ff1", delta_m=(PACE_M, 0.0, 0.0)))
         for k, place in enumerate(AFAR_M):
             off_m = wrong_m if k == 0 and second > FROM_S else 0.0
-            range_m = math.dist((0.5 * second, 0.0), place) + off_m + float(chance.normal(0.0, 0.1))
+            range_m = math.dist((PACE_M * second, 0.0), place) + off_m + float(chance.normal(0.0, 0.1))
             readings.append(Range(t=t, a="ff1", b=f"r{k}", range_m=range_m, technology="uwb"))
     return problem_of(fused(readings))
 

@@ -1,0 +1,102 @@
+"""Whether somebody crawls, by the pace that his unit tells."""
+
+import math
+from collections.abc import Iterable
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from estimator.fusion import physics
+from estimator.fusion.learned.gait import RENEWED, Gait
+
+CRAWL_MPS, WALK_MPS = 0.4, 1.0
+
+
+def gone(paces_mps: Iterable[float], begun: Gait | None = None) -> Gait:
+    """How somebody goes after seconds at each pace."""
+    gait = begun or Gait()
+    for pace_mps in paces_mps:
+        gait = gait.after(pace_mps, 1.0)
+    return gait
+
+
+WALKS, CRAWLS = gone([WALK_MPS] * 20), gone([CRAWL_MPS] * 20)
+
+
+def changes(paces_mps: Iterable[float], begun: Gait) -> int:
+    """How often somebody begins to go otherwise, in seconds at each pace."""
+    times, gait = 0, begun
+    for pace_mps in paces_mps:
+        before, gait = gait, gait.after(pace_mps, 1.0)
+        times += gait.changes(before)
+    return times
+
+
+def test_who_crawls_is_noticed_within_seconds_and_so_is_who_walks_again() -> None:
+    assert changes([CRAWL_MPS] * 10, WALKS) == 1
+    assert changes([CRAWL_MPS] * 10 + [WALK_MPS] * 10, WALKS) == 2
+
+
+def test_who_turns_round_or_takes_some_short_steps_does_not_crawl() -> None:
+    assert changes([CRAWL_MPS] * 5 + [WALK_MPS] * 5, WALKS) == 0
+
+
+@given(st.lists(st.floats(0.2, physics.WALKS_MPS - 0.01), max_size=200))
+def test_who_is_always_slow_goes_as_he_does_once(paces_mps: list[float]) -> None:
+    """After 20 s at 0.4 m/s he is not taken for who begins to crawl again, whatever slow pace is his."""
+    assert changes(paces_mps, CRAWLS) == 0
+
+
+def test_who_crawls_from_the_first_on_is_noticed_once_and_who_walks_is_never() -> None:
+    assert changes([CRAWL_MPS] * 60, Gait()) == 1
+    assert changes([WALK_MPS] * 60, Gait()) == 0
+
+
+def test_how_somebody_goes_is_not_known_by_his_first_step() -> None:
+    assert gone([CRAWL_MPS]).slow is None
+    assert gone([CRAWL_MPS] * 10).slow
+    assert gone([WALK_MPS] * 10).slow is False
+
+
+@given(st.lists(st.floats(physics.CRAWLS_MPS, physics.WALKS_MPS - 0.01), max_size=30), st.booleans())
+def test_a_pace_between_both_says_nothing_new(paces_mps: list[float], slow: bool) -> None:
+    assert changes(paces_mps, CRAWLS if slow else WALKS) == 0
+
+
+@given(st.lists(st.floats(0.1, 3.0), min_size=1, max_size=10))
+def test_a_pace_is_the_same_however_a_way_is_told(paces_mps: list[float]) -> None:
+    """Half by half a second, and second by second; at an even pace it is that pace from the first on."""
+    halves = [pace_mps for pace_mps in paces_mps for _ in range(2)]
+    by_halves = Gait()
+    for pace_mps in halves:
+        by_halves = by_halves.after(0.5 * pace_mps, 0.5)
+    assert by_halves.pace_mps == pytest.approx(gone(paces_mps).pace_mps)
+    assert gone([paces_mps[0]] * 3).pace_mps == pytest.approx(paces_mps[0])
+
+
+@given(st.lists(st.floats(1e-300, 60.0), min_size=1, max_size=20), st.floats(0.2, 3.0))
+def test_an_even_pace_is_that_pace_however_short_its_displacements_are(
+    spans_s: list[float], pace_mps: float
+) -> None:
+    gait = Gait()
+    for span_s in spans_s:
+        gait = gait.after(pace_mps * span_s, span_s)
+    assert gait.pace_mps == pytest.approx(pace_mps)
+
+
+def test_the_shortest_time_that_can_be_told_tells_no_pace() -> None:
+    assert Gait().after(math.ulp(0.0), math.ulp(0.0)) == Gait()
+
+
+def test_what_a_crawl_is_off_by_is_another_scale_and_so_is_that_of_a_walk() -> None:
+    crawls = gone([CRAWL_MPS] * 10, WALKS)
+    across_m2, *_, scale2 = crawls.doubt()
+    assert scale2**0.5 == pytest.approx(physics.CRAWL_SCALE_SIGMA)
+    assert 0.3 < across_m2**0.5 < 0.5
+    assert gone([WALK_MPS] * 20, crawls).doubt()[-1] ** 0.5 == pytest.approx(physics.SCALE_SIGMA)
+
+
+def test_no_random_walk_of_a_scale_is_taken_for_another_one() -> None:
+    """Nor that of a day."""
+    assert physics.SCALE_WALK_PER_ROOT_S**2 * 86_400.0 < RENEWED < physics.SCALE_SIGMA**2 / 10.0
