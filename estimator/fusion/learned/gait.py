@@ -33,12 +33,12 @@ class Gait(msgspec.Struct, frozen=True, array_like=True):
     Attributes:
         pace_mps: mean pace of the last seconds in which he went, by his unit (m/s).
         told: share of that mean which paces have told, 0 to 1: the rest is not known yet.
-        slow: he may crawl; None until he has gone for some seconds.
+        slow: he may crawl; he does not before he has gone for some seconds.
     """
 
     pace_mps: float = 0.0
     told: float = 0.0
-    slow: bool | None = None
+    slow: bool = False
 
     def after(self, gone_m: float, span_s: float) -> Self:
         """How he goes after a displacement by which he went: so far, in a time."""
@@ -48,11 +48,11 @@ class Gait(msgspec.Struct, frozen=True, array_like=True):
             return self
         pace_mps = self.pace_mps + share / told * (gone_m / span_s - self.pace_mps)
         slow = pace_mps < (physics.WALKS_MPS if self.slow else physics.CRAWLS_MPS)
-        return type(self)(pace_mps, told, slow if told >= KNOWN else None)
+        return type(self)(pace_mps, told, slow and told >= KNOWN)
 
     def changes(self, before: Self) -> bool:
-        """Whether he goes otherwise than he did. As somebody goes who is not known yet, he walks."""
-        return bool(self.slow) != bool(before.slow)
+        """Whether he goes otherwise than he did."""
+        return self.slow != before.slow
 
     def doubt(self) -> tuple[float, float, float, float, float, float]:
         """What is unsure where it begins: variances of east, north, up (m²), ψ, β and the unit's scale.

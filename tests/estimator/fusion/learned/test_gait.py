@@ -54,7 +54,7 @@ def test_who_crawls_from_the_first_on_is_noticed_once_and_who_walks_is_never() -
 
 
 def test_how_somebody_goes_is_not_known_by_his_first_step() -> None:
-    assert gone([CRAWL_MPS]).slow is None
+    assert gone([CRAWL_MPS]).slow is False
     assert gone([CRAWL_MPS] * 10).slow
     assert gone([WALK_MPS] * 10).slow is False
 
