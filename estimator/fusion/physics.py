@@ -49,9 +49,10 @@ SCALE_WALK_PER_ROOT_S = 1e-5
 STRAPDOWN_SCALE_SIGMA = 0.01
 """Of displacements that raw samples make: they are off by what accelerometers are, 1 % (data sheets of
 LSM6DSO, BMI270). ZUPT-aided units err by 0.3 to 1 % of the way in all (Foxlin 2005; Nilsson 2013)."""
-CRAWLS_MPS, WALKS_MPS = 0.6, 0.75
-"""Whose unit tells a slower pace may crawl, until it tells a faster one: assumed. On clear floors and without
-gear students crawl at 0.8 m/s (Cao et al., Safety Science 104, 2018); who feels his way does not."""
+CRAWLS_MPS, WALKS_MPS = 0.7, 0.85
+"""Whose unit tells a slower pace may crawl, until it tells a faster one: assumed, 0.6 m/s and what a unit may
+tell too much of it. On clear floors and without gear students crawl at 0.8 m/s (Cao et al., Safety Science
+104, 2018); who feels his way does not."""
 CRAWL_SCALE_SIGMA = 0.1
 """What a unit makes of a crawl is off by so much of it: assumed. What samples make of simulated ones is 0.1
 to 8 % off, 10 to 17 % where no boot ever rests (decision 0029)."""

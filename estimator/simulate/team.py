@@ -18,6 +18,8 @@ START_SIGMA_M = 0.5
 HEADING_SIGMA_RAD = 0.1
 GYRO_BIAS_RADPS = 0.0012
 """A good MEMS gyro after a minute at rest: 0.07 °/s, one sigma."""
+CRAWLS = 0.1
+"""They are off by this share of a crawl, one sigma: assumed, as the estimator does."""
 RISES = 0.01
 """Boots rise or fall by so much for each metre of way, one sigma: ZUPT-aided units err by 0.3 to 1 %."""
 
@@ -50,12 +52,15 @@ class Kit:
 
 def typical_unit(rng: np.random.Generator) -> PdrUnit:
     """A foot-mounted unit as they differ from boot to boot."""
+    # A stream of its own: how heights rise, and what of a crawl is told, change nothing else.
+    own = rng.spawn(1)[0]
+    rises, crawls = float(own.normal(0.0, RISES)), float(own.normal(1.0, CRAWLS))
     return PdrUnit(
         heading_sigma_rad=HEADING_SIGMA_RAD,
         bias_radps=float(rng.normal(0.0, GYRO_BIAS_RADPS)),
         scale=float(rng.normal(1.0, 0.02)),
-        # A stream of its own: how heights rise changes nothing else.
-        rises=float(rng.spawn(1)[0].normal(0.0, RISES)),
+        rises=rises,
+        crawls=crawls,
     )
 
 

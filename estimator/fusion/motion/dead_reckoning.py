@@ -10,7 +10,7 @@ from numba import njit
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
-from estimator.fusion.learned.gait import KEPT, RENEWED
+from estimator.fusion.learned.gait import kept
 from estimator.fusion.memory.ledger import UNSEEN
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -24,26 +24,40 @@ from estimator.measurements.displacement import move
 
 FLOOR = (1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12)
 STOOD: Vector3 = (0.0, 0.0, 0.0)
+NO_WAY = (0.0, 0.0)
 SELDOM_S = 1.5
 """Of who tells more than a stride at once nobody knows how he went at the end of it."""
 
 
+class Move(NamedTuple):
+    """How one unit has moved.
+
+    Attributes:
+        node: its node.
+        delta_m: displacement in its frame (m).
+        duration_s: time (s).
+        noise: variances that it adds.
+        changed_m: way, in its frame, of a gait that has changed: east, north (m).
+    """
+
+    node: NodeState
+    delta_m: Vector3
+    duration_s: float
+    noise: Noise
+    changed_m: tuple[float, float] = NO_WAY
+
+
 def advance_units(state: FusionState, steps: Sequence[Step]) -> None:
     """One transition for all units that have moved in a tick, by what their displacements add up to."""
-    advance_by(state, [(s.node, s.delta_m, s.duration_s, s.noise) for s in steps])
+    advance_by(state, [Move(s.node, s.delta_m, s.duration_s, s.noise, s.changed_m) for s in steps])
 
 
-def advance_by(state: FusionState, moves: Sequence[tuple[NodeState, Vector3, float, Noise]]) -> None:
-    """One transition for units.
-
-    Args:
-        state: the fusion: its graph is changed.
-        moves: of each unit its node, displacement in its frame (m), time (s) and variances that it adds.
-    """
+def advance_by(state: FusionState, moves: Sequence[Move]) -> None:
+    """One transition for units, of the state's graph."""
     graph, starts = state.graph, state.graph.starts
     told = [
-        (starts[node.position], starts[node.unit], *delta_m, duration_s, *sum_of(noise, FLOOR))
-        for node, delta_m, duration_s, noise in moves
+        (starts[node.position], starts[node.unit], *delta_m, duration_s, *sum_of(noise, FLOOR), *changed_m)
+        for node, delta_m, duration_s, noise, changed_m in moves
     ]
     rows = np.empty(6 * len(told), dtype=np.intp)
     kernel = np.empty((len(rows), len(rows)))
@@ -58,7 +72,7 @@ def walk(
     """Steps of units as one transition of the Kirchhoff state, see `Kirchhoff.advance`.
 
     Args:
-        steps: as `walked` takes them, g × 12.
+        steps: as `walked` takes them, g × 14.
         matrix: L, n × n or larger, changed.
         vector: b, as long, changed.
         reference: x, as long, changed.
@@ -85,7 +99,7 @@ def walked(steps: Array, x: Array) -> tuple[Indices, Array, Array, Array]:
 
     Args:
         steps: where each unit's position and its errors start; displacement in its frame (m), time (s), and
-            the variances of its six numbers, g × 12.
+            the variances of its six numbers; the way of a gait that has changed, see `renew`, g × 14.
         x: the reference of the graph, n.
     """
     g = len(steps)
@@ -96,10 +110,43 @@ def walked(steps: Array, x: Array) -> tuple[Indices, Array, Array, Array]:
             states[i, c], noise[i, c, c] = x[rows[i, c]], steps[i, 6 + c]
     moved = move(states, steps[:, 2:5], steps[:, 5])
     for i in range(g):
-        if noise[i, 5, 5] > RENEWED:
-            moved.transition[i, 5, 5] = KEPT
-            moved.state[i, 5] *= KEPT
+        renew(states[i], steps[i, 12:14], moved.state[i], moved.transition[i], noise[i])
     return rows, moved.state, moved.transition, noise
+
+
+@njit(cache=True)
+def renew(before: Array, changed_m: Array, state: Array, transition: Array, noise: Array) -> None:
+    """Let a unit's scale be another one since its bearer began to go otherwise, where a step renews it.
+
+    That shows after some seconds, in which he has gone a way D at the scale before, s: with the scale that it
+    had, s' = 0.1 s + δ, he is at p' = p + Rz(ψ) D (s' − s). So δ, which is the step's noise, moves his place
+    as well, and what later tells the scale tells of that way too.
+
+    Args:
+        before: ψ, β, s − 1 behind the place, before the step, 6.
+        changed_m: D in the unit's frame, 2 (m).
+        state: the same after the step, changed.
+        transition: F of the step, 6 × 6, changed.
+        noise: Q, 6 × 6, so far only its diagonal; changed.
+    """
+    share, variance = kept(noise[5, 5]), noise[5, 5]
+    if share == 1.0:
+        return
+    cosine, sine, less = np.cos(before[3]), np.sin(before[3]), (1.0 - share) * before[5]
+    east = cosine * changed_m[0] - sine * changed_m[1]
+    north = sine * changed_m[0] + cosine * changed_m[1]
+    state[5], transition[5, 5] = share * before[5], share
+    state[0] -= less * east
+    state[1] -= less * north
+    transition[0, 3] += less * north
+    transition[1, 3] -= less * east
+    transition[0, 5] -= (1.0 - share) * east
+    transition[1, 5] -= (1.0 - share) * north
+    noise[0, 5] = noise[5, 0] = variance * east
+    noise[1, 5] = noise[5, 1] = variance * north
+    noise[0, 0] += variance * east * east
+    noise[1, 1] += variance * north * north
+    noise[0, 1] = noise[1, 0] = variance * east * north
 
 
 def go_on(state: FusionState, until: Mapping[str, float]) -> None:
@@ -171,7 +218,8 @@ def go_on_at(state: FusionState, until: Mapping[str, float], known: Mapping[str,
         across = went_on_m2(until_s, pace.lasted_s) - went_on_m2(since_s, pace.lasted_s)
         e, n, u = (along_s * each for each in pace.pace_mps)
         delta_m = e, n, u
-        moves.append((node, delta_m, until_s - since_s, (across, across, 0.1 * across, 0.0, 0.0, 0.0)))
+        noise = across, across, 0.1 * across, 0.0, 0.0, 0.0
+        moves.append(Move(node, delta_m, until_s - since_s, noise))
         marks = node.trail or ((node.pose_t, 0.0, 0.0, 0.0),)
         trail = (*marks, mark_after(marks[-1], t, delta_m))
         state.nodes[name] = replace(node, pose_t=t, trail=trail)
@@ -220,7 +268,7 @@ def drift_units(
             across = max(across, unplaced_m2(span_s, since_s))
         step = (*delta_m, across, up, turn, bias, scale, UNSEEN)
         state.ledger.add("steps", t, node.index, node.pose_t, *step)
-        moves.append((node, delta_m, span_s, (across, across, up, turn, bias, scale)))
+        moves.append(Move(node, delta_m, span_s, (across, across, up, turn, bias, scale)))
         state.nodes[name] = replace(
             node,
             pose_t=t,

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
-from estimator.fusion.learned.gait import SHUFFLES_MPS
+from estimator.fusion.learned.gait import STRIDE_S, Gait
 from estimator.fusion.learned.straight_legs import StraightLegs
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m
@@ -20,8 +20,6 @@ from estimator.inertial.strapdown import RATE_WALK
 from estimator.measurements.displacement import Displacement
 
 TRAIL_S = 4.0
-STRIDE_S = 1.0
-"""Over so long at least a velocity is meant: a boot stands for half of each stride."""
 FIRST_DURATION_S = 1.0
 AGAIN_S = 1.5
 """What a displacement tells again of an earlier one is no longer, or nobody knows how much of it is new."""
@@ -51,6 +49,7 @@ class Increment(NamedTuple):
         noise: variances that it adds.
         biases: what standstills and straight legs tell, those that have ended or lasted long.
         too_fast: nobody moves so far in its time.
+        gait: how its bearer goes now, where that has changed.
     """
 
     since_t: float
@@ -58,6 +57,7 @@ class Increment(NamedTuple):
     noise: Noise
     biases: tuple[ToldBias, ...]
     too_fast: bool
+    gait: Gait | None
 
 
 class Step:
@@ -68,6 +68,7 @@ class Step:
         delta_m: displacement in the unit's frame (m).
         duration_s: time that it took (s).
         noise: variances that it adds.
+        changed_m: way of the gait that has changed, in the unit's frame: east, north (m).
         taken: it has taken any.
     """
 
@@ -76,6 +77,7 @@ class Step:
         self.delta_m: Vector3 = (0.0, 0.0, 0.0)
         self.duration_s = 0.0
         self.noise: Noise = NOTHING
+        self.changed_m = (0.0, 0.0)
         self._pose_t, self._unit_t, self._report_s = node.pose_t, node.unit_t, node.report_s
         self._heading_rad, self._speed_mps = node.unit_heading_rad, node.speed_mps
         self._way_m, self._faced, self._biases = node.way_m, node.faced, ToldBiases(node)
@@ -140,8 +142,9 @@ class Step:
             noise = sum_of(noise, (unseen, unseen, 0.0, 0.0, 0.0, 0.0))
         if sets_off:
             noise = sum_of(noise, SET_OFF)
-        if not (raw or too_fast) and length > SHUFFLES_MPS * own > 0.0 and self.node.role == "responder":
-            noise = sum_of(noise, self._change_gait(length, own))
+        gait_before = self._gait
+        if not (raw or too_fast) and own > 0.0 and self.node.role == "responder":
+            self._gait = self._gait.after(length, own)
         self._biases.walk(start, t, (e, n), noise[3] * max(self.node.walk_factors[1], 1.0))
         if own > 0.0:
             gone_m = math.hypot(e, n)
@@ -161,12 +164,8 @@ class Step:
         self.noise = sum_of(self.noise, self._as_learned(noise, reading))
         # The window takes off anew what heights rise by themselves.
         told_m = e, n, u + rise * math.hypot(e, n)
-        return Increment(pose_t, told_m, noise, self._biases.take(), too_fast)
-
-    def _change_gait(self, gone_m: float, span_s: float) -> Noise:
-        """Variances that a displacement adds because its bearer begins to crawl with it, or to walk again."""
-        before, self._gait = self._gait, self._gait.after(gone_m, span_s)
-        return self._gait.doubt() if self._gait.changes(before) else NOTHING
+        gait = self._gait if self._gait.changes(gait_before) else None
+        return Increment(pose_t, told_m, noise, self._biases.take(), too_fast, gait)
 
     def tells_again(self, reading: Displacement) -> bool:
         """Whether a displacement sums up so much that its unit has told that the rest is anybody's guess."""

@@ -12,6 +12,7 @@ from estimator.fusion.entering.introduce import attach_unit
 from estimator.fusion.entering.replaced_unit import begin_frame, framed
 from estimator.fusion.memory.ledger import ASSUMED, CLAIMED
 from estimator.fusion.memory.state import Count, FusionState
+from estimator.fusion.motion.changed_gait import change_gait
 from estimator.fusion.motion.dead_reckoning import advance_units
 from estimator.fusion.motion.steps import TRAIL_S, Step, start_of
 from estimator.fusion.readings.gyro_biases import enter, weigh_anew
@@ -146,4 +147,6 @@ def _extend(state: FusionState, step: Step, reading: Displacement, biases: list[
     across, _, up, turn, bias, scale = increment.noise
     variances = (across, up, turn, bias, scale, given)
     state.ledger.add("steps", reading.t, node.index, increment.since_t, *increment.delta_m, *variances)
+    if increment.gait is not None:
+        change_gait(state, step, increment.gait)
     return True

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion.memory.ledger import ASSUMED, GIVEN, UNSEEN
+from estimator.fusion.learned.gait import RENEWED
+from estimator.fusion.memory.ledger import ASSUMED, GIVEN, SCALE2, UNSEEN
 from estimator.fusion.motion.long_displacements import STRAIGHT_S, bridged_m2
 from estimator.fusion.motion.silence import wandered_m2
 from estimator.graph.chain_kernels import Integers
@@ -68,6 +69,15 @@ class Way:
         spans = np.where(steps[:, GIVEN] == UNSEEN, steps[:, 0] - steps[:, 2], 0.0)
         inside = np.interp(t, self.marks, np.concatenate([[0.0], np.cumsum(spans)]))
         return np.asarray(inside + np.maximum(t - self.marks[-1], 0.0) - np.maximum(self.marks[0] - t, 0.0))
+
+    def renewed2(self, t: float) -> float:
+        """Variance with which the unit's scale was another one by an epoch (s), or where its way begins.
+
+        That is where sums begin: nil, where its scale was none other yet.
+        """
+        steps = self._steps
+        told = steps[(steps[:, 0] <= max(t, self.begin_t)) & (steps[:, SCALE2] > RENEWED), SCALE2]
+        return float(told[-1]) if len(told) else 0.0
 
     def gone(self, t: Array) -> Array:
         """Share of its whole length that it has gone at `t`, m."""

@@ -59,7 +59,10 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
             unit = rows[rows[:, 2] == 1.0][-1]
             mean += [float(unit[10]), 0.0, 0.0]
             bias = state.bias_sigma_radps(walk.node)
-            known_by += [float(unit[11]) ** -2, bias**-2, state.scale_sigma(walk.node) ** -2]
+            # Who crawls from the first on begins with the scale of a crawl.
+            crawls = walk.way.renewed2(float(layout.times[walk.first, i]))
+            scale2 = crawls or state.scale_sigma(walk.node) ** 2
+            known_by += [float(unit[11]) ** -2, bias**-2, 1.0 / scale2]
     size = layout.length * layout.width
     for row in state.ledger.table("stands"):
         number = int(row[1])

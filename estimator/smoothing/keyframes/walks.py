@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from estimator.fusion.learned.gait import KEPT, RENEWED
+from estimator.fusion.learned.gait import kept
 from estimator.fusion.motion.constant_velocity import free_motion
 from estimator.graph.chain_kernels import half_inverse
 from estimator.graph.dense import Array
@@ -109,7 +109,7 @@ def reckon(states: Array, between: Array, durations_s: Array, known: int) -> Non
             cosine, sine, states[k, 4], 1.0 + states[k, 5], between[k, :3], between[k, 3:6]
         )
         states[k + 1] = states[k]
-        states[k + 1, SCALE] *= KEPT if between[k, VARIANCES[SCALE]] > RENEWED else 1.0
+        states[k + 1, SCALE] *= kept(between[k, VARIANCES[SCALE]])
         states[k + 1, 0] += led.east
         states[k + 1, 1] += led.north
         states[k + 1, 2] += led.up
@@ -162,9 +162,8 @@ def unit_motion(between: Array, durations_s: Array, states: Array) -> Motion:
         for c in range(STATES):
             noise[i, c, c] = max(between[i, VARIANCES[c]], 0.0) + FLOOR[c]
             residual[i, c] = states[i + 1, c] - led[i, c]
-        if noise[i, SCALE, SCALE] > RENEWED:
-            transition[i, SCALE, SCALE] = KEPT
-            residual[i, SCALE] = states[i + 1, SCALE] - KEPT * states[i, SCALE]
+        transition[i, SCALE, SCALE] = share = kept(noise[i, SCALE, SCALE])
+        residual[i, SCALE] = states[i + 1, SCALE] - share * states[i, SCALE]
         # The noise is the unit's own: it is scaled with what it reports. Were it not, a smaller scale would
         # always fit better, for it makes every step's error smaller; so the derivative is by the way that
         # was gone.

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from estimator.fusion import physics
 from estimator.fusion.learned.gait import KEPT
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.dead_reckoning import drift_units, walk, walked
@@ -32,7 +33,7 @@ def steps_of(graph: Kirchhoff) -> Array:
     """Both walk for a second."""
     starts = [(graph.starts[Variable("position", n)], graph.starts[Variable("unit", n)]) for n in NAMES]
     noise = (0.01, 0.01, 0.01, 1e-4, 1e-6, 1e-5)
-    return np.array([(*at, 1.0, 0.5 * at[0], 0.1, 1.0, *noise) for at in starts])
+    return np.array([(*at, 1.0, 0.5 * at[0], 0.1, 1.0, *noise, 0.0, 0.0) for at in starts])
 
 
 def test_units_walk_in_one_transition_as_any_moving_nodes_do() -> None:
@@ -57,6 +58,41 @@ def test_whose_gait_changes_has_another_scale() -> None:
     after = graph.covariance()
     assert after[scale, scale] == pytest.approx(0.1**2 + KEPT**2 * before[scale, scale])
     assert after[scale + 6, scale + 6] == pytest.approx(before[scale + 6, scale + 6] + 1e-5)
+
+
+def test_a_gait_that_shows_late_is_reckoned_as_one_that_shows_at_once() -> None:
+    """Eight steps of a crawl that turns: its scale is renewed before them, or with the last; mean and all."""
+    at_once, late, still = alone(), alone(), np.zeros(2)
+    turned = np.linspace(0.0, 2.0, 8)
+    steps_m = 0.4 * np.column_stack([np.cos(turned), np.sin(turned)])
+    crawl2 = physics.CRAWL_SCALE_SIGMA**2
+    taken(at_once, still, crawl2, still)
+    for delta_m in steps_m:
+        taken(at_once, delta_m, 0.0, still)
+    for delta_m in steps_m[:-1]:
+        taken(late, delta_m, 0.0, still)
+    taken(late, steps_m[-1], crawl2, steps_m.sum(axis=0))
+    taken(late, still, 0.0, still)
+    assert late.solve() == pytest.approx(at_once.solve(), abs=1e-6)
+    np.testing.assert_allclose(late.covariance(), at_once.covariance(), rtol=1e-3, atol=3e-5)
+
+
+def alone() -> Kirchhoff:
+    """One unit, whose gyro is not off, and who has been told something of its place and its errors."""
+    graph, chance = Kirchhoff(), np.random.default_rng(2)
+    graph.add_node(Variable("position", "a"), (3.0, 1.0, 0.0), (0.5, 0.5, 0.5))
+    graph.add_node(Variable("unit", "a"), (0.3, 0.0, 0.02), (0.1, 1e-3, 0.02))
+    rows = np.tile(np.arange(6), (4, 1))
+    jacobian = chance.normal(0.0, 1.0, (4, 6)) * [1.0, 1.0, 1.0, 1.0, 0.0, 1.0]
+    graph.add_measurements(rows, jacobian, np.zeros(4), np.ones(4))
+    return graph
+
+
+def taken(graph: Kirchhoff, delta_m: Array, scale2: float, changed_m: Array) -> None:
+    """One step of `alone`, which is exact but for its scale."""
+    noise = (*(1e-6,) * 3, 1e-8, 1e-10, 1e-8 + scale2)
+    steps = np.array([(0, 3, *delta_m, 0.0, 1.0, *noise, *changed_m)])
+    assert walk(steps, *graph.storage(), graph.size, np.empty(6, dtype=np.intp), np.empty((6, 6)))
 
 
 def test_a_transition_that_rounding_has_spoilt_is_left_to_be_done() -> None:
