@@ -21,6 +21,7 @@ from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.variable import BODY
 from estimator.smoothing.keyframes.walks import STATES, Motion
+from estimator.smoothing.learning.alike_units import pulled
 from estimator.smoothing.learning.delays import doubt_delays
 from estimator.smoothing.learning.range_noise import learn_ranging
 from estimator.smoothing.learning.slips import widen_steps
@@ -29,8 +30,6 @@ from estimator.smoothing.learning.wrong_steps import Doubts, doubts_of, find_sli
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
 
-SPREAD = 1.0
-"""Units differ from the usual one by this much in the logarithm of a variance."""
 STEP, DOUBTED = 0.3, 3.0
 """Farthest that the logarithm of a variance moves in one solution; and so many times as far towards more
 noise: while a unit far worse than assumed is trusted, its bearer is led astray."""
@@ -98,19 +97,27 @@ def learn_walks(state: FusionState, problem: Problem, solved: Solution, doubts: 
         doubts: see `wrong_steps.doubts_of`.
         most: see `STEP`.
     """
+    scores = dict[int, Array]()
     for i, doubt in doubts.items():
         reported = _reported(problem, i)
-        if not reported.any():
-            continue
-        scores = noise_scores(solved.motions[i], doubt, reported).tolist()
-        node = state.life(problem.layout.walks[i].number)
-        factors = []
-        for factor, (score, sure) in zip(node.walk_factors, scores, strict=True):
-            off = np.log(factor)
-            known = sure * SEEN + abs(score) + 1.0 / SPREAD**2
-            step = min(max(2.0 * (score - off / SPREAD**2) / known, -most), DOUBTED * most)
-            factors.append(float(min(max(factor * np.exp(step), LEAST), MOST)))
-        state.keep(replace(node, walk_factors=(factors[0], factors[1])))
+        if reported.any():
+            scores[i] = noise_scores(solved.motions[i], doubt, reported)
+    nodes = [state.life(problem.layout.walks[i].number) for i in scores]
+    if not nodes:
+        return
+    off, told = np.log([node.walk_factors for node in nodes]), np.array(list(scores.values()))
+    score, sure = told[:, :, 0], told[:, :, 1] * SEEN + np.abs(told[:, :, 0])
+    steps = np.empty_like(off)
+    raw = np.array([node.raw for node in nodes])
+    for i in range(len(nodes)):
+        # How far a bearer goes is his own: he may crawl, or be carried.
+        steps[i, :1] = pulled(off[i, :1], score[i, :1], sure[i, :1])
+    for alike in (raw, ~raw):
+        if alike.any():
+            steps[alike, 1] = pulled(off[alike, 1], score[alike, 1], sure[alike, 1])
+    led = np.exp(off + np.clip(2.0 * steps, -most, DOUBTED * most))
+    for node, (by_place, by_turn) in zip(nodes, np.clip(led, LEAST, MOST).tolist(), strict=True):
+        state.keep(replace(node, walk_factors=(by_place, by_turn)))
 
 
 def _reported(problem: Problem, index: int) -> NDArray[np.bool_]:
