@@ -6,8 +6,8 @@ therefore not accuracy on data never seen. They are `HEADING_WALK_RAD_PER_ROOT_M
 `RANGE_SCALE_WIDE`, `UNCALIBRATED`, `OBSTRUCTED_SCALE`, the bias of `uwb` in `RANGE_BIAS_SIGMA_M`,
 `FLOOR_SIGMA`, `NEAR_SIGMA_DB`, `RSSI_POWER_DBM` and its sigma, `FREE_WAY_MPS`, `SLIP_M`, `SLIP_RARE`,
 `WALL_M`, `EXCESS_M` and the two after it, `UNHEARD_MEMORY_S`, `SET_OFF_BIAS_RADPS` (with plaza2 in view as
-well), `NO_BODY_M`, from which probability on bodies are taken to be seen, and that the spread of gyro biases
-is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm.
+well), `NO_BODY_M`, `CRAWLS_MPS`, `WALKS_MPS`, from which probability on bodies are taken to be seen, and that
+the spread of gyro biases is uniform up to `BIAS_SIGMA_MOST_RADPS`, not in its logarithm.
 "Measured" stands beside figures that public recordings show.
 
 Some stand in compiled functions, which keep the number that they were compiled with: after a change remove

@@ -25,7 +25,7 @@ PARTS, EVEN = 4, 0.3
 """Who tells the parts of a stride, so many at least, and goes in all of them as fast, but for so much, takes
 no strides: what rolls, or is watched by a camera, and tells of a slow way what it tells of any. The boot of
 who walks stands for half of a stride, that of who crawls while the other one is drawn up: their paces differ
-by about as much as they are."""
+by about as much as they are, which is assumed."""
 NO_STRIDE = 0.0, 0.0, 0.0, 0
 KNOWN = 1.0 - math.exp(-1.0)
 """So much of that mean is to be of paces that were told, before they say how somebody goes at first."""

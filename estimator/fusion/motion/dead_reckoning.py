@@ -24,7 +24,6 @@ from estimator.measurements.displacement import move
 
 FLOOR = (1e-6, 1e-6, 1e-6, 1e-10, 1e-14, 1e-12)
 STOOD: Vector3 = (0.0, 0.0, 0.0)
-NO_WAY = (0.0, 0.0)
 SELDOM_S = 1.5
 """Of who tells more than a stride at once nobody knows how he went at the end of it."""
 
@@ -44,7 +43,7 @@ class Move(NamedTuple):
     delta_m: Vector3
     duration_s: float
     noise: Noise
-    changed_m: tuple[float, float] = NO_WAY
+    changed_m: tuple[float, float] = (0.0, 0.0)
 
 
 def advance_units(state: FusionState, steps: Sequence[Step]) -> None:
