@@ -47,7 +47,7 @@ def began(rows: Array, slow: bool) -> int:
     t, span_s, gone_m = rows[:, 0], rows[:, 0] - rows[:, 2], np.hypot(rows[:, 3], rows[:, 4])
     stride_s, way_m = np.maximum(span_s, STRIDE_S), np.cumsum(gone_m)
     stride_m = way_m - np.interp(t - stride_s, t, way_m, left=0.0)
-    goes = (stride_m > SHUFFLES_MPS * stride_s) & (rows[:, GIVEN] != UNSEEN)
+    goes = (span_s > 0.0) & (stride_m > SHUFFLES_MPS * stride_s) & (rows[:, GIVEN] != UNSEEN)
     goes[: changed[-1] + 1 if len(changed) else 0] = False
     back = np.flatnonzero(goes)[::-1]
     if not len(back):

@@ -60,6 +60,16 @@ def test_what_nobody_has_seen_tells_no_pace() -> None:
     assert began(rows, slow=True) == 13
 
 
+def test_what_was_found_in_between_and_takes_no_time_is_no_pace() -> None:
+    """A step that slipped stands in the ledger once more: a row without displacement or time."""
+    rows = told([WALK] * 13 + [CRAWL] * 3)
+    rows[0, -1] = UNSEEN
+    slip = rows[1:2].copy()
+    slip[0, [0, 2]] = 1.0
+    slip[0, 3] = 0.0
+    assert began(np.vstack([rows[:1], slip, rows[1:]]), slow=True) == 14
+
+
 def test_it_began_after_it_has_changed_before() -> None:
     """Who walked between two crawls for some steps only."""
     rows = told([CRAWL] * 9 + [WALK] * 3 + [CRAWL] * 4)
