@@ -28,7 +28,7 @@ block."""
 ASSUMED, CLAIMED, UNSEEN = 0.0, 1.0, 2.0
 """Whose a step's noise is, its `given`: assumed of units, and learned; claimed by its unit, or found; that of
 a bearer who goes on while his unit tells nothing."""
-SCALE2, GIVEN = (COLUMNS["steps"].index(name) for name in ("scale2", "given"))
+ACROSS2, SCALE2, GIVEN = (COLUMNS["steps"].index(name) for name in ("across2", "scale2", "given"))
 
 RANGE, RSSI, BEARING, BODY_BEARING = range(4)
 """Kinds of pairs; the last two are bearings in the local frame and in the body frame of `a`."""

@@ -55,6 +55,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
         carried_t: its bearer is carried: epoch of the newest report of its unit that it stands (s).
         carried_m: how far its unit has got since that report: east, north in the unit's frame (m).
         standing_asked_t: when it was last asked in vain whether he was carried while it stood (s).
+        image_asked_t: when it was last asked about in its turn whether it is at an image (s).
         worn: how its unit is taken to be worn, see `entering.unit_mounting.Mounting`.
         first_heading_rad: heading that its unit reported first, in the unit's frame.
         unit_heading_rad: newest heading that its unit reported, in the unit's frame.
@@ -139,6 +140,7 @@ class NodeState(msgspec.Struct, frozen=True, kw_only=True, array_like=True, gc=F
     carried_t: float | None = None
     carried_m: tuple[float, float] = (0.0, 0.0)
     standing_asked_t: float = -math.inf
+    image_asked_t: float = -math.inf
     worn: tuple[bool, float] = (False, 0.0)
     whole_t: float = math.inf
     missed_s: float = 0.0

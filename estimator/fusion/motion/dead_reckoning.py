@@ -10,7 +10,7 @@ from numba import njit
 
 from estimator.estimate import Vector3
 from estimator.fusion import physics
-from estimator.fusion.learned.gait import kept
+from estimator.fusion.learned.gait import SHORT_S, STRIDE_S, kept
 from estimator.fusion.memory.ledger import UNSEEN
 from estimator.fusion.memory.nodes import NodeState
 from estimator.fusion.memory.state import FusionState
@@ -236,13 +236,14 @@ def drift_units(
 ) -> None:
     """Units have not reported up to an epoch at which something else is to be held against their position.
 
-    Their bearers go on as they went for a moment; they may have stood or walked (`silence.unheard_m2`). A
-    displacement that comes later counts for the part of its time that is left.
+    Their bearers go on as they went for a moment; they may have stood or walked (`silence.unheard_m2`). Not
+    those of whom ranges or fixes tell: these say where they go, and would tell of their headings by what was
+    only guessed. A displacement that comes later counts for the part of its time that is left.
 
     Args:
         state: the fusion.
         until: the epoch, by unit.
-        onward: nothing is heard of them: what is tells where they go, and nothing of their headings.
+        onward: nothing is heard of them.
         placed: those of them of whom a range or a fix tells there.
     """
     moves = []
@@ -253,18 +254,22 @@ def drift_units(
             # From now on ranges alone tell where he goes.
             state.suspected = True
         span_s, missed_s = t - node.pose_t, node.missed_s
-        noise = unseen_noise(span_s, since_s)
-        # What is heard of him meanwhile tells how he goes on: then nothing is missed all along.
-        untold_m2 = missed_m2(span_s, missed_s, node.raw) if since_s == 0.0 else 0.0
+        placed_t, silent = t if name in placed else node.placed_t, since_s + span_s > SILENT_S
+        unplaced = t > placed_t + physics.UNHEARD_MEMORY_S
+        goes_on = (onward or unplaced) and not silent and len(node.trail) > 1
         delta_m, trail = STOOD, tuple[Mark, ...]()
-        if onward and since_s + span_s <= SILENT_S and len(node.trail) > 1:
+        if goes_on:
             delta_m = onward_m(node.trail, span_s, since_s)
             trail = (*node.trail, mark_after(node.trail[-1], t, delta_m))
-        across, _, up, turn, bias, scale = noise
-        across = max(across, untold_m2)
-        placed_t, silent = t if name in placed else node.placed_t, since_s + span_s > SILENT_S
-        if silent and t > placed_t + physics.UNHEARD_MEMORY_S:
-            across = max(across, unplaced_m2(span_s, since_s))
+        across, _, up, turn, bias, scale = unseen_noise(span_s, since_s)
+        if goes_on and _told_pace(node):
+            across = went_on(since_s + span_s)[1] - went_on(since_s)[1]
+            up = 0.1 * across
+        else:
+            # What is heard of him meanwhile tells how he goes on: then nothing is missed all along.
+            untold_m2 = missed_m2(span_s, missed_s, node.raw) if since_s == 0.0 else 0.0
+            across = max(across, untold_m2, unplaced_m2(span_s, since_s) if unplaced and silent else 0.0)
+            missed_s += span_s if since_s == 0.0 else 0.0
         step = (*delta_m, across, up, turn, bias, scale, UNSEEN)
         state.ledger.add("steps", t, node.index, node.pose_t, *step)
         moves.append(Move(node, delta_m, span_s, (across, across, up, turn, bias, scale)))
@@ -272,10 +277,15 @@ def drift_units(
             node,
             pose_t=t,
             trail=trail,
-            missed_s=missed_s + (span_s if since_s == 0.0 else 0.0),
+            missed_s=missed_s,
             placed_t=placed_t,
             # What readings of a link have in common he leaves behind as he goes, seen or not.
             way_m=node.way_m + (physics.FREE_WAY_MPS * span_s if silent else 0.0),
         )
     # His unit's frame turns on, whether it reports or not.
     advance_by(state, moves)
+
+
+def _told_pace(node: NodeState) -> bool:
+    """Whether a unit has told how its bearer goes: whole strides at once, and nothing was missed since."""
+    return not node.raw and node.report_s > STRIDE_S - SHORT_S and node.missed_s == 0.0

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.fusion.images import Image
-from estimator.fusion.motion.silence import SILENT_S
 from estimator.graph.dense import Array
 from estimator.smoothing.images.closest_approach import closest_approaches
 from estimator.smoothing.images.heard_radios import HeardRadios, radios_of
@@ -84,10 +83,10 @@ def loose_steps(problem: Problem, solved: Solution, index: int) -> NDArray[np.bo
     found[walk.first : walk.last] = solved.motions[index].noise[:, 0, 0] > LOOSE_M2
     if not found.any():
         return found
-    turns = np.flatnonzero(np.diff(found, prepend=False, append=False))
-    for first, last in zip(turns[::2].tolist(), turns[1::2].tolist(), strict=True):
-        found[first:last] = times[last] - times[first] >= SILENT_S
-    return found
+    silent = np.zeros_like(found)
+    for since_t, until_t in walk.way.silences(*times[[walk.first, walk.last]].tolist()).tolist():
+        silent[:-1] |= (times[:-1] < until_t) & (times[1:] > since_t)
+    return found & silent
 
 
 def flips(

@@ -8,10 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from estimator.fusion import physics
 from estimator.fusion.learned.gait import RENEWED
-from estimator.fusion.memory.ledger import ASSUMED, GIVEN, SCALE2, UNSEEN
+from estimator.fusion.memory.ledger import ACROSS2, ASSUMED, GIVEN, SCALE2, UNSEEN
 from estimator.fusion.motion.long_displacements import STRAIGHT_S, bridged_m2
-from estimator.fusion.motion.silence import wandered_m2
+from estimator.fusion.motion.silence import SILENT_S, wandered_m2
 from estimator.graph.chain_kernels import Integers
 from estimator.graph.dense import Array
 
@@ -19,6 +20,7 @@ SUMS = 12
 """Displacement 3, its first moment 3, variances 5, length."""
 LENGTH = 11
 """Which of them its length is."""
+EPSILON_S = 1e-6
 LAID = 8
 """What readings need of them."""
 
@@ -69,6 +71,23 @@ class Way:
         spans = np.where(steps[:, GIVEN] == UNSEEN, steps[:, 0] - steps[:, 2], 0.0)
         inside = np.interp(t, self.marks, np.concatenate([[0.0], np.cumsum(spans)]))
         return np.asarray(inside + np.maximum(t - self.marks[-1], 0.0) - np.maximum(self.marks[0] - t, 0.0))
+
+    def silences(self, since_t: float, until_t: float) -> Array:
+        """When its unit has told nothing for long, between two epochs: begins and ends, k × 2 (s).
+
+        Of two packets that were lost one after the other, with one between them, each is by itself.
+        """
+        steps = self._steps[self._steps[:, 0] > self._steps[:, 2]]
+        spans = steps[:, 0] - steps[:, 2]
+        # What was left out comes before what was told, and was taken to be gone at a walk.
+        untold_s = np.minimum(np.sqrt(steps[:, ACROSS2]) / physics.GAP_MPS, spans)
+        untold_s = np.where((steps[:, GIVEN] == UNSEEN) | (spans >= SILENT_S), spans, untold_s)
+        first_t, last_t = steps[:, 2].min(initial=self.marks[-1]), self.marks[-1]
+        begins = np.concatenate([[min(since_t, first_t)], steps[:, 2], [last_t]])
+        ends = np.concatenate([[first_t], steps[:, 2] + untold_s, [max(until_t, last_t)]])
+        apart = begins[1:] > ends[:-1] + EPSILON_S
+        found = np.column_stack([begins[np.append(True, apart)], ends[np.append(apart, True)]])
+        return np.asarray(found[found[:, 1] - found[:, 0] >= SILENT_S - EPSILON_S])
 
     def renewed2(self, t: float) -> float:
         """Variance with which the unit's scale was another one by an epoch (s), or where its way begins.

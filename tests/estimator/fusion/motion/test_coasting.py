@@ -11,6 +11,8 @@ from estimator.fusion.motion.coasting import mark_after, missed_m2, onward_m, we
 from estimator.fusion.motion.silence import went_on
 from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
+from estimator.measurements.node import Node
+from estimator.measurements.rssi import Rssi
 from estimator.trackers.kirchhoff import KirchhoffTracker
 from tests.estimator.ellipses import INSIDE, SURE, outside
 from tests.estimator.inertial.boot_navigation import true_m
@@ -59,6 +61,23 @@ def test_a_walker_half_of_whose_displacements_are_lost_is_not_left_behind() -> N
     assert shown[-1].position_m is not None
     assert math.dist(shown[-1].position_m, (72.0, 0.0, 0.0)) < 5.0
     assert max(outside(e.position_m, e.covariance_m2, (1.2 * e.t, 0.0)) for e in shown[1:]) < INSIDE
+
+
+def test_nor_where_powers_are_heard_meanwhile_which_tell_no_pace() -> None:
+    """Of one radio across his way; were each second that is lost a standstill, he would be 30 m behind."""
+    told: list[AnyReading] = [
+        Node(t=0.0, node="a1", role="anchor", position_m=(36.0, 40.0, 0.0), sigma_m=0.1)
+    ]
+    for second in range(1, 61):
+        if second < 4 or second % 2 == 0:
+            moved = Displacement(t=float(second), node="ff1", delta_m=(1.2, 0.0, 0.0), from_t=second - 1.0)
+            told.append(moved)
+        t = second + 0.5
+        away_m = math.hypot(1.2 * t - 36.0, 40.0)
+        told.append(Rssi(t=t, a="ff1", b="a1", dbm=physics.RSSI_POWER_DBM - 25.0 * math.log10(away_m)))
+    (found,) = [shown for shown in pictures(told)[-2:] if shown.node == "ff1"]
+    assert found.position_m is not None
+    assert math.dist(found.position_m, (1.2 * found.t, 0.0, 0.0)) < 5.0
 
 
 @pytest.mark.parametrize("each", [100, 200])

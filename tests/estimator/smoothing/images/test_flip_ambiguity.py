@@ -109,6 +109,12 @@ def test_a_packet_that_was_lost_is_no_silence_in_which_somebody_turns_back(lost_
     assert not loose_steps(problem, solved, 0).any()
 
 
+@pytest.mark.parametrize("every", [2, 3])
+def test_packets_lost_one_by_one_are_no_silence_either(every: int) -> None:
+    problem, solved = solved_of(crossing(TWO, range(10, 30, every)))
+    assert not loose_steps(problem, solved, 0).any()
+
+
 def test_a_silent_unit_leaves_its_bearer_to_ranges() -> None:
     problem, solved = solved_of(crossing(TWO, range(15, 28)))
     grid = problem.layout.grid[:-1][loose_steps(problem, solved, 0)[:-1]]

@@ -5,6 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from estimator.fusion import physics
+from estimator.fusion.memory.ledger import ASSUMED, UNSEEN
 from estimator.fusion.motion.silence import wandered_m2
 from estimator.smoothing.keyframes.displacement_sums import LAID, SummedEnds, Way, set_sums_of
 
@@ -90,3 +92,33 @@ def test_inside_a_long_displacement_a_unit_may_have_been_anywhere_between_its_en
     assert unsure[[0, 1, 5]].tolist() == [0.0, 0.0, 0.0]
     assert unsure[3] == unsure.max() > 0.0
     assert unsure[2] == pytest.approx(unsure[4])
+
+
+def told(*spans: tuple[float, float, float, float]) -> Steps:
+    """Rows of the ledger: since when, until when, variance across (m²), and whose noise that is."""
+    steps = np.zeros((len(spans), 12))
+    for row, (since_t, t, across2, given_by) in zip(steps, spans, strict=True):
+        row[[0, 2, 6, 11]] = t, since_t, across2, given_by
+    return steps
+
+
+def test_a_silence_is_what_no_report_interrupts() -> None:
+    heard, lost = 1e-3, physics.GAP_MPS**2
+    way = Way(
+        0.0,
+        told(
+            (0.0, 1.0, heard, ASSUMED),
+            # Two packets that are lost, with a report between them.
+            (1.0, 3.0, lost, ASSUMED),
+            (3.0, 5.0, lost, ASSUMED),
+            # Silence, and the report after it that does not say since when it sums up.
+            (5.0, 8.0, 1.0, UNSEEN),
+            (8.0, 10.0, lost, ASSUMED),
+            (10.0, 11.0, heard, ASSUMED),
+        ),
+        (1.0, 1.0),
+    )
+    assert way.silences(0.0, 12.0) == pytest.approx(np.array([[5.0, 9.0]]), abs=0.1)
+    assert way.silences(-6.0, 16.0) == pytest.approx(
+        np.array([[-6.0, 0.0], [5.0, 9.0], [11.0, 16.0]]), abs=0.1
+    )
