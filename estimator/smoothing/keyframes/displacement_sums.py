@@ -20,9 +20,10 @@ SUMS = 12
 """Displacement 3, its first moment 3, variances 5, length."""
 LENGTH = 11
 """Which of them its length is."""
-EPSILON_S = 1e-6
 LAID = 8
 """What readings need of them."""
+EPSILON_S = 1e-6
+"""Epochs that differ by less are the same."""
 
 
 class SummedEnds(NamedTuple):
@@ -79,7 +80,8 @@ class Way:
         """
         steps = self._steps[self._steps[:, 0] > self._steps[:, 2]]
         spans = steps[:, 0] - steps[:, 2]
-        # What was left out comes before what was told, and was taken to be gone at a walk.
+        # What a report leaves out comes before what it tells, and was taken to be gone at a walk; one that
+        # tells nothing, for nobody gets so far in its time, is left out whole.
         untold_s = np.minimum(np.sqrt(steps[:, ACROSS2]) / physics.GAP_MPS, spans)
         untold_s = np.where((steps[:, GIVEN] == UNSEEN) | (spans >= SILENT_S), spans, untold_s)
         first_t, last_t = steps[:, 2].min(initial=self.marks[-1]), self.marks[-1]
