@@ -85,8 +85,17 @@ class StraightLegs(msgspec.Struct, frozen=True, array_like=True):
         All may be bent alike, by c² of variance: then they tell 1 / (1 / Σ 1/v + c²) together, as those with
         v (1 + c² Σ 1/v) do that are bent each by itself.
         """
-        told = self.sums[0] + (0.0 if self.leg is None else self.leg.told[0])
+        told = self.sums[0] + self._under_way[0]
         return self.bent + told * physics.STRAIGHT_SHARED_RADPS**2
+
+    @property
+    def _under_way(self) -> tuple[float, float]:
+        """What the leg has told that its bearer is on: see `Leg.told`."""
+        return (0.0, 0.0) if self.leg is None else self.leg.told
+
+    def has_told_more(self, before: Self) -> bool:
+        """Whether they have told anything since then: else `unsurer` is what it was."""
+        return self.sums != before.sums or self._under_way != before._under_way
 
     def sigma_radps(self, sigma_radps: float) -> float:
         """Standard deviation of a bias that one of them shows, beside all others (rad/s).

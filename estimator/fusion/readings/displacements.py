@@ -140,7 +140,7 @@ def _extend(state: FusionState, step: Step, reading: Displacement, biases: list[
             )
         state.say("outlier", reading.t, node.node, text)
         state.count("outlier")
-    if step.straight.unsurer != straight.unsurer:
+    if step.straight.has_told_more(straight):
         weigh_anew(state, node, straight, step.straight)
     biases += enter(state, node, increment.biases)
     given = ASSUMED if reading.sigma_m is None else CLAIMED

@@ -21,10 +21,10 @@ APART_S = 30.0
 """Readings as near as this to a slip tell of it."""
 NEAR_S, ASKED = 3.5, 8
 """Which steps around it are asked, and so many of them at most."""
-SLACKS_M, ITERATIONS, RESTING = (0.3, 0.1), 6, 0.1
-"""How far each is solved: all else is nearly where it was."""
+SLACKS_M, NEARLY_M, ITERATIONS, RESTING = (0.3, 0.1), (0.1,), 6, 0.1
+"""How far each is solved: all else is nearly where it was, and nearer still from a step beside it."""
 CLEARER = 2.0
-"""By how much, in log likelihood, another one must be likelier."""
+"""By how much, in log likelihood, another one must be likelier; behind one that is as much less none is."""
 ELSE = 1.0
 """Log odds of a slip, before how rare it is, that must be left without the radio that tells most of it."""
 
@@ -46,21 +46,44 @@ def judged(
     pull, farther_m = _pulls(problem, solved, slip)
     if not _confirmed(problem, pull, gain):
         return None
+    radio = int(np.argmax(pull))
+    t, likeliest, there = _likeliest_step(problem, solved, slip, build)
+    starts = solved.x, *_walled(problem, solved.x, slip, radio, float(farther_m[radio]))
+    none = min(_solved(problem, x).cost for x in starts)
+    if none - likeliest.cost < physics.SLIP_RARE:
+        return None
+    return slip._replace(t=t) if there.cost - likeliest.cost > CLEARER else slip
+
+
+def _likeliest_step(
+    problem: Problem, solved: Solution, slip: Slip, build: Callable[[FusionState], Problem]
+) -> tuple[float, Solution, Solution]:
+    """The middle (s) of the step near a slip with which all is likeliest; its solution, and the slip's own.
+
+    From the slip on they are asked one after the other, each way until one is clearly less likely.
+    """
     state = problem.layout.state
-    steps = own_rows(state.ledger.table("steps"), slip.number)
-    middle = 0.5 * (steps[:, 2] + steps[:, 0])
-    near = middle[(np.abs(middle - slip.t) < NEAR_S) & (steps[:, 2] < steps[:, 0])]
-    asked, costs = [slip.t, *near[:: len(near) // ASKED + 1].tolist()], []
-    for t in asked:
+
+    def slipped(t: float, x: Array, slacks_m: tuple[float, ...]) -> Solution:
         other = state.copy()
         widen_steps(other, [slip._replace(t=t)])
-        costs.append(_cost(build(other), solved.x))
-    best = int(np.argmin(costs))
-    radio = int(np.argmax(pull))
-    walled = _walled(problem, solved.x, slip, radio, float(farther_m[radio]))
-    if min(_cost(problem, x) for x in (solved.x, walled)) - costs[best] < physics.SLIP_RARE:
-        return None
-    return slip._replace(t=asked[best]) if costs[0] - costs[best] > CLEARER else slip
+        return _solved(build(other), x, slacks_m)
+
+    there = slipped(slip.t, solved.x, SLACKS_M)
+    best = slip.t, there
+    steps = own_rows(state.ledger.table("steps"), slip.number)
+    middle, half_s = 0.5 * (steps[:, 2] + steps[:, 0]), 0.5 * (steps[:, 0] - steps[:, 2])
+    off_s = middle - slip.t
+    near = middle[(np.abs(off_s) < NEAR_S) & (np.abs(off_s) > half_s) & (half_s > 0.0)]
+    near = near[:: len(near) // ASKED + 1]
+    for side in (near[near < slip.t][::-1], near[near > slip.t]):
+        beside = there
+        for t in side.tolist():
+            beside = slipped(t, beside.x, NEARLY_M)
+            if beside.cost > best[1].cost + CLEARER:
+                break
+            best = min(best, (t, beside), key=lambda found: found[1].cost)
+    return *best, there
 
 
 def _confirmed(problem: Problem, pull: Array, gain: float) -> bool:
@@ -94,16 +117,21 @@ def _pulls(problem: Problem, solved: Solution, slip: Slip) -> tuple[Array, Array
     return pull, farther_m / np.maximum(count, 1.0)
 
 
-def _cost(problem: Problem, x: Array) -> float:
-    """What the solution costs that an estimate, flat, leads to with what crews lose to anchors asked."""
-    return problem.with_losses().solve(x, SLACKS_M, ITERATIONS, RESTING).cost
+def _solved(problem: Problem, x: Array, slacks_m: tuple[float, ...] = SLACKS_M) -> Solution:
+    """The solution that an estimate, flat, leads to with what crews lose to anchors asked."""
+    return problem.with_losses().solve(x, slacks_m, ITERATIONS, RESTING)
 
 
-def _walled(problem: Problem, x: Array, slip: Slip, radio: int, farther_m: float) -> Array:
-    """An estimate, flat, with what a slip explains taken for a wall before a radio that adds so much (m)."""
-    layout, x = problem.layout, x.copy()
+def _walled(problem: Problem, x: Array, slip: Slip, radio: int, farther_m: float) -> list[Array]:
+    """An estimate, flat, with what a slip explains taken for a wall before a radio that adds so much (m).
+
+    None where no walls are asked of that radio since then.
+    """
+    layout, columns = problem.layout, list[int]()
     for (_, number), loss in layout.lost.items():
         kind, _, other, since_s = parts_of(number)
         if (kind, other) == (RANGE, radio) and since_s > slip.t - 0.5 * STEP_S:
-            x[layout.length * layout.width + loss.column] -= farther_m
-    return x
+            columns.append(layout.length * layout.width + loss.column)
+    walled = x.copy()
+    walled[columns] -= farther_m
+    return [walled] if columns else []

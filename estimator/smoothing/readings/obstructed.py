@@ -185,13 +185,18 @@ def _usual(share: Array, floor: float, rung: int) -> float:
 @njit(cache=True, error_model="numpy")
 def _sum_along_links(before: Integers, kept: Array, told: Array, onward: Array, back: Array) -> None:
     """Sum log odds along each link, forward and backward; they fade as the link's error does."""
-    onward[:], back[:] = told, 0.0
-    for i in range(len(told)):
-        if before[i] >= 0:
-            onward[i] += kept[i] * onward[before[i]]
-    for i in range(len(told) - 1, -1, -1):
-        if before[i] >= 0:
-            back[before[i]] = kept[i] * (told[i] + back[i])
+    m, n = told.shape
+    for i in range(m):
+        last = before[i]
+        for r in range(n):
+            onward[i, r], back[i, r] = told[i, r], 0.0
+            if last >= 0:
+                onward[i, r] += kept[i] * onward[last, r]
+    for i in range(m - 1, -1, -1):
+        last = before[i]
+        if last >= 0:
+            for r in range(n):
+                back[last, r] = kept[i] * (told[i, r] + back[i, r])
 
 
 @njit(cache=True)
