@@ -186,6 +186,7 @@ def _usual(share: Array, floor: float, rung: int) -> float:
 def _sum_along_links(before: Integers, kept: Array, told: Array, onward: Array, back: Array) -> None:
     """Sum log odds along each link, forward and backward; they fade as the link's error does."""
     m, n = told.shape
+    # Number by number: a sum of rows would be an array of its own each, and half of all the work.
     for i in range(m):
         last = before[i]
         for r in range(n):

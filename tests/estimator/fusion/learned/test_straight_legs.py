@@ -180,3 +180,14 @@ def test_legs_that_differ_by_more_than_ways_are_bent_by_tell_less() -> None:
     assert alike.bent == 1.0
     assert differ.bent > 2.0
     assert differ.sigma_radps(0.003) > alike.sigma_radps(0.003)
+
+
+def test_what_each_leg_is_worth_changes_only_where_one_has_told_more() -> None:
+    facings = [*leg_of(0.004, 30), *leg_of(-0.006, 30, CORNER), *leg_of(0.0, 30)]
+    legs, more = StraightLegs(), 0
+    for second, facing in enumerate(facings):
+        before = legs
+        legs, _ = walked([facing], before, float(second))
+        more += legs.has_told_more(before)
+        assert legs.has_told_more(before) or legs.unsurer == before.unsurer
+    assert 1 < more < len(facings) // 4
