@@ -20,7 +20,10 @@ Told = tuple[float, float]
 TRUSTED = 0.25
 """Probability of not being calibrated below which a technology is taken for calibrated. One that is wrongly
 trusted bends everything; one that is wrongly distrusted costs some sharpness."""
-
+LOST = 0.5
+"""The same where trust was lost, and what followed without it has given it back: what trust has bent says a
+little more against it. By one limit for both, each solution would be followed by another one with the other
+prior."""
 SEEN = 0.9
 """Probability from which on bodies are taken to be seen; until then covariances hold that they may be."""
 
@@ -33,12 +36,33 @@ class Calibration(msgspec.Struct, frozen=True, array_like=True):
         narrow: standard deviation of its prior if it is calibrated, when that was judged last.
         assumed: that of the prior that it was estimated with; nil: none was yet.
         wide: that of the wide kind.
+        regained: trust was lost, and given back by the solution without it.
     """
 
     uncalibrated: float = physics.UNCALIBRATED
     narrow: float = physics.RANGE_SCALE_SIGMA
     assumed: float = 0.0
     wide: float = physics.RANGE_SCALE_WIDE
+    regained: bool = False
+
+    @property
+    def limit(self) -> float:
+        """Probability below which it is taken to be calibrated."""
+        return LOST if self.regained and self.assumed < self.wide else TRUSTED
+
+    def judged(self, uncalibrated: float, narrow: float, assumed: float) -> "Calibration":
+        """What is thought of a scale now; see the attributes."""
+        without = 0.0 < self.assumed < self.wide <= assumed
+        regained = self.regained or (without and uncalibrated < TRUSTED)
+        return Calibration(uncalibrated, narrow, assumed, self.wide, regained)
+
+    def scale_sigma(self, narrow: float) -> float:
+        """Standard deviation of the prior of a scale, of the kind it is taken for.
+
+        Args:
+            narrow: that of a calibrated one.
+        """
+        return narrow if self.uncalibrated < self.limit else self.wide
 
 
 def told_of(sigma: float, estimate: float, variance: float) -> Told:
@@ -68,16 +92,6 @@ def narrow_sigma(outliers: float, scatter: float = math.inf) -> float:
         scatter: what the others scatter by, over their length; infinite where nobody knows.
     """
     return math.hypot(physics.RANGE_SCALE_SIGMA, min(physics.OBSTRUCTED_SCALE * outliers, scatter))
-
-
-def scale_sigma(share: float, narrow: float) -> float:
-    """Standard deviation of the prior of a scale that is uncalibrated with probability `share`.
-
-    Args:
-        share: probability that it is not calibrated.
-        narrow: standard deviation where it is.
-    """
-    return narrow if share < TRUSTED else physics.RANGE_SCALE_WIDE
 
 
 def body_sigmas(technology: str, powers: bool) -> tuple[float, float]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from estimator.estimate import Notice, NoticeCode, Vector3
 from estimator.fusion import physics
-from estimator.fusion.learned.calibration import SEEN, Calibration, body_sigmas, narrow_sigma, scale_sigma
+from estimator.fusion.learned.calibration import SEEN, Calibration, body_sigmas, narrow_sigma
 from estimator.fusion.learned.delays import Radio, Suspicion
 from estimator.fusion.learned.gyros import bias_sigma_radps
 from estimator.fusion.learned.link_correlation import Links
@@ -241,8 +241,8 @@ class FusionState:
 
     def range_scale_sigma(self, technology: str) -> float:
         """Standard deviation of the prior of a ranging technology's scale, of the kind it is taken for."""
-        known = self.calibrations.get(technology)
-        return scale_sigma(0.0 if known is None else known.uncalibrated, self.narrow_sigma(technology))
+        known, narrow = self.calibrations.get(technology), self.narrow_sigma(technology)
+        return narrow if known is None else known.scale_sigma(narrow)
 
     def body_sigma(self, technology: str, powers: bool) -> float:
         """Standard deviation of the prior of what bodies do to readings (m or dB), of the likelier kind."""

@@ -34,6 +34,7 @@ class Effort(NamedTuple):
         flips: so many images of a way, those that jump least.
         tried: so many are solved at most; fewer, where there are many ways.
         rounds: so often it is asked again beside those who have gone to their image.
+        resting: see `Problem.solve`: of the solution that images are compared with, by the same floors.
     """
 
     whole: bool
@@ -42,12 +43,13 @@ class Effort(NamedTuple):
     flips: int
     tried: int
     rounds: int
+    resting: float
 
 
-LIVE = Effort(whole=False, nearest=2, newest=2, flips=24, tried=6, rounds=2)
+LIVE = Effort(whole=False, nearest=2, newest=2, flips=24, tried=6, rounds=2, resting=0.1)
 HURRIED = LIVE._replace(tried=2, rounds=1)
 """Where the same is soon asked again in full: the two likeliest with all others held, once."""
-WHOLE = Effort(whole=True, nearest=6, newest=2, flips=48, tried=16, rounds=4)
+WHOLE = Effort(whole=True, nearest=6, newest=2, flips=48, tried=16, rounds=4, resting=0.001)
 
 
 class Flip(NamedTuple):

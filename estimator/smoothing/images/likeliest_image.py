@@ -68,9 +68,9 @@ def likeliest_image(problem: Problem, solved: Solution, effort: Effort = LIVE) -
         solved: a solution.
         effort: how much is asked.
     """
-    # Units measure heights: what floors are guessed from is unknown only of those who have none.
     if any(_compared(problem, solved, i, effort) for i in range(len(problem.layout.walks))):
-        solved = hold_floors(problem, hold_floors(problem, solved))
+        for _ in range(2):
+            solved = hold_floors(problem, solved, effort.resting)
     problem, solved, before = still_likely(problem, solved)
     solved, apart = starts_near_radios(problem, solved, effort.whole)
     again = asked_again(problem)
@@ -82,7 +82,7 @@ def likeliest_image(problem: Problem, solved: Solution, effort: Effort = LIVE) -
     parts: Parts | None = None
     for _ in range(effort.rounds):
         if problem.rows.floors is not None:
-            solved = hold_floors(problem, solved)
+            solved = hold_floors(problem, solved, effort.resting)
         led = _loose(problem, solved)
         asked = asked_of(problem, solved, led, again, effort)
         most = max(effort.tried * WAYS // max(len(asked), WAYS), LEAST_TRIED)
@@ -121,12 +121,12 @@ def likeliest_image(problem: Problem, solved: Solution, effort: Effort = LIVE) -
 
 
 def _compared(problem: Problem, solved: Solution, index: int, effort: Effort) -> bool:
-    """Whether solutions will be compared that put somebody elsewhere who has no unit."""
+    """Whether solutions will be compared that put somebody elsewhere."""
     walk = problem.layout.walks[index]
-    if not walk.node.moving or walk.way is not None:
+    if not walk.node.moving:
         return False
     own = loose_steps(problem, solved, index)
-    return bool(walk.node.otherwise or _flips(problem, solved, index, own, effort))
+    return bool(walk.node.otherwise or walk.node.turned or _flips(problem, solved, index, own, effort))
 
 
 def _flips(

@@ -28,7 +28,7 @@ def local_solution(
         there = problem.solve(x, slacks_m, len(slacks_m) + SOON)
         if there.cost > known.cost + HOPELESS:
             return None
-        if not there.rests:
+        if not (there.rests or there.stuck):
             there = problem.solve(there.x, iterations=ITERATIONS)
     except ValueError:
         # It hangs in the air there.

@@ -15,7 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from estimator.fusion import physics
-from estimator.fusion.learned.calibration import Calibration, body_sigmas, scale_sigma, told_of, uncalibrated
+from estimator.fusion.learned.calibration import Calibration, body_sigmas, told_of, uncalibrated
 from estimator.fusion.memory.prior import Key
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
@@ -195,9 +195,10 @@ def calibrate(state: FusionState, problem: Problem, x: Array, border: Array) -> 
             narrow = state.narrow_sigma(name)
             sigma = state.range_scale_sigma(name)
             told = uncalibrated(sigma, float(x[size + start]), float(border[start, start]), narrow)
-            state.calibrations[name] = Calibration(told, narrow, sigma)
+            thought = state.calibrations.get(name, Calibration()).judged(told, narrow, sigma)
+            state.calibrations[name] = thought
             # Another prior bends everything: what follows from it is not left for later.
-            state.due = state.due or scale_sigma(told, narrow) != sigma
+            state.due = state.due or thought.scale_sigma(narrow) != sigma
         if key[0] in ("range", "rssi") and key not in known and problem.rows.by_units(key[1]):
             judge_bodies(state, key, float(x[size + start + BODY]), float(border[start + BODY, start + BODY]))
 

@@ -22,7 +22,10 @@ CLOSE = 0.3
 """A step is good enough where the lowest cost is within this share of it."""
 NOWHERE = 1e9
 """No place, angle or speed is a larger number: coordinates end at a hundred kilometres."""
-LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e3
+LEAST_DAMPING = 1e-3
+UPHILL = 2
+"""So many steps in a row that lead uphill, and the search is stuck: first-estimate Jacobians are not the
+slope of the cost, and shorter steps have gained nothing that counts (decision 0132)."""
 METRES_OFF = (3.0, 1.0, 0.3, 0.1)
 """Slacks for a start that may be metres off, or bent by as much (m)."""
 
@@ -77,7 +80,7 @@ class _Search:
         self.here = objective.at(x)
         self._objective, self._resting = objective, resting
         self._linear = Linearised(self.here.residual, lambda: jacobian)
-        self._damping, self._near, self._rests = 0.0, False, False
+        self._damping, self._near, self._rests, self._uphill = 0.0, False, False, 0
         self._before: tuple[NewtonStep, Array] | None = None
 
     def advance(self, slack_m: float, doubt: Array | None) -> bool:
@@ -103,7 +106,9 @@ class _Search:
             if not there.cost <= self.here.cost + ACCEPTED:
                 # The parabola reaches farther than it holds: shorter steps, and more along the slope.
                 self._damping, self._before = max(10.0 * self._damping, LEAST_DAMPING), None
-                return self._damping <= MOST_DAMPING
+                self._uphill += 1
+                return self._uphill < UPHILL
+        self._uphill = 0
         self._before = None if slack_m > 0.0 or self._damping > 0.0 else (newton, direction.step)
         self._near = self.here.cost - there.cost < NEAR
         self.here = there
@@ -118,7 +123,8 @@ class _Search:
         objective, here, linear = self._objective, self.here, self._linear
         weighted = objective.weigh(here.residual)
         assemble = partial(objective.assemble, here.x, linear, weighted, here.motions)
-        return Solution(here.x, linear, weighted, here.motions, here.cost, self._rests, assemble)
+        ends = self._rests, self._uphill == UPHILL
+        return Solution(here.x, linear, weighted, here.motions, here.cost, *ends, assemble)
 
     def _newton_step(self, weighted: Weighted, near: bool) -> NewtonStep:
         """A Newton step.

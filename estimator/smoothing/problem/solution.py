@@ -23,6 +23,7 @@ class Solution:
         motions: the walks' motion there.
         cost: negative log likelihood up to a constant.
         rests: the last step promised next to nothing.
+        stuck: the last steps promised more, but led uphill, however short.
         assemble: makes its normal equations at the estimate.
     """
 
@@ -32,6 +33,7 @@ class Solution:
     motions: list[Motion]
     cost: float
     rests: bool
+    stuck: bool
     assemble: Callable[[], Chain]
 
     @cached_property

@@ -13,12 +13,11 @@ from estimator.fusion.learned.calibration import (
     Calibration,
     doubt,
     narrow_sigma,
-    scale_sigma,
     uncalibrated,
 )
 
 NARROW = narrow_sigma(0.0)
-SIGMAS = [scale_sigma(0.0, NARROW), 0.03, scale_sigma(1.0, NARROW)]
+SIGMAS = [NARROW, 0.03, physics.RANGE_SCALE_WIDE]
 """Of priors that an estimate may have been made with."""
 
 
@@ -40,6 +39,30 @@ def test_what_a_units_own_scale_may_explain_is_no_reason_for_distrust(sigma: flo
     assert judged(sigma, 0.003, 0.002) < 0.1
     assert judged(sigma, 0.02, physics.SCALE_SIGMA) < TRUSTED
     assert judged(sigma, 0.07, physics.SCALE_SIGMA) > TRUSTED
+
+
+def followed(*told: float) -> list[float]:
+    """The priors that a scale has had, where each solution has told how likely it is not calibrated."""
+    known, sigmas = Calibration(), list[float]()
+    for share in told:
+        known = known.judged(share, NARROW, known.scale_sigma(NARROW))
+        sigmas.append(known.scale_sigma(NARROW))
+    return sigmas
+
+
+def test_trust_that_what_follows_without_it_gives_back_is_not_lost_for_the_same_again() -> None:
+    """What a narrow prior has bent says a quarter and more, what follows from a wide one less, for ever."""
+    wide = physics.RANGE_SCALE_WIDE
+    assert followed(0.2, 0.28, 0.18, 0.28, 0.3) == [NARROW, wide, NARROW, NARROW, NARROW]
+
+
+def test_trust_is_lost_again_where_it_is_likelier_that_a_scale_is_not_calibrated() -> None:
+    wide = physics.RANGE_SCALE_WIDE
+    assert followed(0.2, 0.28, 0.18, 0.55, 0.3, 0.2) == [NARROW, wide, NARROW, wide, wide, NARROW]
+
+
+def test_a_scale_is_trusted_first_by_odds_of_three_to_one() -> None:
+    assert followed(0.3, 0.26, 0.24) == [physics.RANGE_SCALE_WIDE, physics.RANGE_SCALE_WIDE, NARROW]
 
 
 @pytest.mark.parametrize("sigma", SIGMAS)

@@ -1,12 +1,17 @@
 """Solutions of a window that are compared with the same floors between radios."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+import pytest
 
+from estimator.smoothing.images import likeliest_image as judging
+from estimator.smoothing.images.image_starts import ImageSolution, Subject
 from estimator.smoothing.images.likeliest_image import likeliest_image
 from estimator.smoothing.images.same_floors import hold_floors
-from tests.estimator.smoothing.images.test_flip_ambiguity import TWO, crossing, solved_of
+from estimator.smoothing.images.solutions import solutions
+from tests.estimator.smoothing.images.test_flip_ambiguity import TWO, crossing, silent, solved_of
 
 
 def test_heights_that_nobody_measures_do_not_tell_which_of_two_solutions_is_likelier() -> None:
@@ -33,3 +38,18 @@ def test_what_is_known_of_floors_stays_where_it_is_likelier() -> None:
 def test_floors_are_told_by_heights_again_after_the_images() -> None:
     problem, solved = solved_of(crossing(TWO))
     assert likeliest_image(problem, solved).problem.rows.floors is None
+
+
+def test_images_of_whose_unit_was_silent_are_compared_by_the_same_floors(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    held = []
+
+    def asked_with(asked: Subject, *rest: Any) -> list[ImageSolution]:
+        held.append(asked.problem.rows.floors is not None)
+        return solutions(asked, *rest)
+
+    monkeypatch.setattr(judging, "solutions", asked_with)
+    likeliest_image(*solved_of(silent(36)))
+    assert held
+    assert all(held)

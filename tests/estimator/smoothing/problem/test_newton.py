@@ -1,10 +1,14 @@
-"""Where a solution may start from."""
+"""Where a solution may start from, and where its search ends."""
+
+from typing import Any
 
 import numpy as np
 from msgspec.structs import replace
 
+from estimator.graph.dense import Array
+from estimator.smoothing.chain.chain import Chain
 from estimator.smoothing.keyframes.walks import STATES
-from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.newton import UPHILL, Problem
 from tests.estimator.smoothing.learning.test_wrong_steps import walk
 from tests.estimator.smoothing.windows import fused, problem_of
 
@@ -50,3 +54,33 @@ def test_units_found_to_be_noisier_are_solved_as_in_a_problem_made_anew() -> Non
     assert np.array_equal(found.x, expected.x)
     assert found.cost == expected.cost
     assert np.abs(found.x - x).max() > 1e-3
+
+
+class _Elsewhere(Problem):
+    """A problem whose first-estimate Jacobians point elsewhere than its cost falls."""
+
+    tried = 0
+
+    def jacobian(self, x: Array) -> Array:
+        return -super().jacobian(x)
+
+    def assemble(self, *args: Any) -> Chain:
+        self.tried += 1
+        return super().assemble(*args)
+
+
+def test_a_search_that_only_leads_uphill_ends_soon_where_it_is() -> None:
+    plain = problem_of(fused(walk()))
+    rest = plain.solve(plain.layout.start())
+    found = (problem := _Elsewhere(plain.layout, plain.rows, None)).solve(rest.x)
+    assert np.array_equal(found.x, rest.x)
+    assert found.stuck
+    assert not found.rests
+    assert problem.tried == UPHILL
+
+
+def test_a_search_that_rests_is_not_stuck() -> None:
+    problem = problem_of(fused(walk()))
+    found = problem.solve(problem.layout.start())
+    assert found.rests
+    assert not found.stuck
