@@ -23,7 +23,7 @@ class Solution:
         motions: the walks' motion there.
         cost: negative log likelihood up to a constant.
         rests: the last step promised next to nothing.
-        stuck: the last steps promised more, but led uphill, however short.
+        stuck: the last steps promised more, but led uphill.
         assemble: makes its normal equations at the estimate.
     """
 
