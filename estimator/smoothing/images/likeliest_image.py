@@ -68,12 +68,12 @@ def likeliest_image(problem: Problem, solved: Solution, effort: Effort = LIVE) -
         solved: a solution.
         effort: how much is asked.
     """
+    again = asked_again(problem)
     if any(_compared(problem, solved, i, effort) for i in range(len(problem.layout.walks))):
         for _ in range(2):
             solved = hold_floors(problem, solved, effort.resting)
     problem, solved, before = still_likely(problem, solved)
     solved, apart = starts_near_radios(problem, solved, effort.whole)
-    again = asked_again(problem)
     # Where nobody was known before, hardly anything tells yet.
     new = any(_is_new(problem.layout, i) for i in range(len(problem.layout.walks)))
     tied = {walk.number: problem.coupled.groups.home(i)[0] for i, walk in enumerate(problem.layout.walks)}

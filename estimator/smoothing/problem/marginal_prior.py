@@ -70,7 +70,10 @@ class MarginalPrior:
         self._known_per_m2: Array = self._matrix.diagonal()[self._places].mean(axis=1)
         # Of what it hardly knows nothing can add up to what nobody measured: readings say where that is.
         hardly = self._places[self._known_per_m2 < KNOWN_M**-2]
-        self._held = np.setdiff1d(np.flatnonzero(self._at >= self._size), hardly)
+        # A turn of the map changes no height: for it none has to be held.
+        heights = np.flatnonzero(np.isin(self._at, [self._size + e + 2 for e in layout.stands.values()]))
+        border = np.flatnonzero(self._at >= self._size)
+        self._held = np.setdiff1d(border, np.union1d(hardly, heights))
 
     def part(self, numbers: Unknowns, x: Array) -> Self:
         """The same of a part of the window, with all walks that it has not held where they are.
@@ -105,8 +108,8 @@ class MarginalPrior:
     def first(self, x: Array) -> Array:
         """The estimate with the border where the prior was linearised, turned as the map is now, flat.
 
-        A place that the prior hardly knows stays where it is: a derivative that was taken metres from there
-        would lead it away.
+        A place that the prior hardly knows stays where it is, and so do all heights: a derivative that was
+        taken metres from there would lead it away.
         """
         first, there = x.copy(), self._reference.copy()
         turn_pairs(there, self._places, self.pivot_m, self._turned_by(x))

@@ -52,13 +52,20 @@ class Problem(Objective):
                 is then farther than √(2 ε) σ from where its step leads.
             kinked: another estimate, flat: where readings differ by it, each is as unsure at the start as
                 that; None: it is as good as can be.
+
+        Returns:
+            A solution that costs no more than the start.
         """
         search = _Search(self, x, resting)
+        begun = search.here.cost
         doubt = None if kinked is None else (self.rows.residual(kinked) - search.here.residual) ** 2
         for iteration in range(iterations):
             slack_m = slacks_m[iteration] if iteration < len(slacks_m) else 0.0
             if not search.advance(slack_m, doubt if iteration == 0 else None):
                 break
+        if slacks_m and search.here.cost > begun + ACCEPTED:
+            # Whole steps, uphill or not, have led it away.
+            return self.solve(x, (), iterations, resting)
         return search.solution()
 
 

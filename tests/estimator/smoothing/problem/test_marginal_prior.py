@@ -98,6 +98,32 @@ def test_a_place_that_the_prior_hardly_knows_is_looked_at_where_it_is() -> None:
     assert np.abs(unknown[others] - x[others]).max() < 0.1
 
 
+def test_every_height_is_looked_at_where_it_is() -> None:
+    layout, prior, x = LATER
+    places = layout.length * layout.width + np.array(list(layout.stands.values()))
+    there = x.copy()
+    there[places + 2] += 4.0
+    carried = MarginalPrior(layout, prior)
+    assert np.array_equal(carried.first(there)[places + 2], there[places + 2])
+    assert np.array_equal(carried.first(there)[places], carried.first(x)[places])
+
+
+def test_a_window_rests_whatever_height_a_place_was_thought_to_have_that_is_known_but_for_that() -> None:
+    layout, prior, x = LATER
+    hardly, at, own = hardly_knowing(layout, prior)
+    hardly.matrix[at, at][:2, :2] = np.eye(2) / 0.3**2
+    level, reference = hardly.reference.copy(), hardly.reference.copy()
+    level[at] = x[own]
+    reference[at] = x[own] + np.array([0.0, 0.0, 20.0])
+    found, other = (
+        problem_of(layout.state, float(layout.grid[0]), hardly._replace(reference=was)).solve(x)
+        for was in (level, reference)
+    )
+    assert found.rests
+    assert other.rests
+    assert np.abs(other.x[own] - found.x[own]).max() < 0.05
+
+
 def test_a_window_rests_wherever_a_place_was_thought_to_be_of_which_nothing_was_known() -> None:
     layout, prior, x = LATER
     hardly, at, own = hardly_knowing(layout, prior)

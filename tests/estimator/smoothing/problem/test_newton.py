@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from estimator.graph.dense import Array
 from estimator.smoothing.chain.chain import Chain
 from estimator.smoothing.keyframes.walks import STATES
-from estimator.smoothing.problem.newton import UPHILL, Problem
+from estimator.smoothing.problem.newton import METRES_OFF, UPHILL, Problem
 from tests.estimator.smoothing.learning.test_wrong_steps import walk
 from tests.estimator.smoothing.windows import fused, problem_of
 
@@ -77,6 +77,13 @@ def test_a_search_that_only_leads_uphill_ends_soon_where_it_is() -> None:
     assert found.stuck
     assert not found.rests
     assert problem.tried == UPHILL
+
+
+def test_where_whole_steps_have_led_uphill_the_search_begins_again_without_them() -> None:
+    plain = problem_of(fused(walk()))
+    x = plain.solve(plain.layout.start()).x
+    misled = _Elsewhere(plain.layout, plain.rows, None)
+    assert misled.solve(x, METRES_OFF, len(METRES_OFF) + UPHILL).cost == misled.solve(x).cost
 
 
 def test_a_search_that_rests_is_not_stuck() -> None:
