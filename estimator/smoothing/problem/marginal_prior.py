@@ -71,7 +71,8 @@ class MarginalPrior:
         # Of what it hardly knows nothing can add up to what nobody measured: readings say where that is.
         hardly = self._places[self._known_per_m2 < KNOWN_M**-2]
         # A turn of the map changes no height: for it none has to be held.
-        heights = np.flatnonzero(np.isin(self._at, [self._size + e + 2 for e in layout.stands.values()]))
+        columns_up = [self._size + start + 2 for start in layout.stands.values()]
+        heights = np.flatnonzero(np.isin(self._at, columns_up))
         border = np.flatnonzero(self._at >= self._size)
         self._held = np.setdiff1d(border, np.union1d(hardly, heights))
 

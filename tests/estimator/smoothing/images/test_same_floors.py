@@ -5,12 +5,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from estimator.smoothing.images import likeliest_image as judging
 from estimator.smoothing.images.image_starts import ImageSolution, Subject
 from estimator.smoothing.images.likeliest_image import likeliest_image
 from estimator.smoothing.images.same_floors import hold_floors
 from estimator.smoothing.images.solutions import solutions
+from estimator.smoothing.problem.newton import Problem
+from estimator.smoothing.problem.solution import Solution
+from tests.estimator.smoothing.images.test_candidates import crew
 from tests.estimator.smoothing.images.test_flip_ambiguity import TWO, crossing, silent, solved_of
 
 
@@ -40,9 +44,8 @@ def test_floors_are_told_by_heights_again_after_the_images() -> None:
     assert likeliest_image(problem, solved).problem.rows.floors is None
 
 
-def test_images_of_whose_unit_was_silent_are_compared_by_the_same_floors(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def floors_held(monkeypatch: pytest.MonkeyPatch, problem: Problem, solved: Solution) -> list[bool]:
+    """Whether floors were held, of each of whom it was asked where he is instead."""
     held = []
 
     def asked_with(asked: Subject, *rest: Any) -> list[ImageSolution]:
@@ -50,6 +53,24 @@ def test_images_of_whose_unit_was_silent_are_compared_by_the_same_floors(
         return solutions(asked, *rest)
 
     monkeypatch.setattr(judging, "solutions", asked_with)
-    likeliest_image(*solved_of(silent(36)))
+    likeliest_image(problem, solved)
+    return held
+
+
+def test_images_of_whose_unit_was_silent_are_compared_by_the_same_floors(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    held = floors_held(monkeypatch, *solved_of(silent(36)))
+    assert held
+    assert all(held)
+
+
+def test_where_it_is_asked_again_what_a_unit_faces_images_are_compared_by_the_same_floors(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    problem, solved, _ = crew()
+    found = [walk._replace(node=structs.replace(walk.node, turned=False)) for walk in problem.layout.walks]
+    problem.layout.walks[:] = found
+    held = floors_held(monkeypatch, problem, solved)
     assert held
     assert all(held)
