@@ -78,7 +78,9 @@ class Gait(msgspec.Struct, frozen=True, array_like=True):
         spread = math.sqrt(max(squares / lasted_s / pace_mps**2 - 1.0, 0.0)) if count >= PARTS else 1.0
         pace_mps = self.pace_mps + share / told * (pace_mps - self.pace_mps)
         uneven = self.uneven + share / told * (spread - self.uneven)
-        slow = pace_mps < (physics.WALKS_MPS if self.slow else physics.CRAWLS_MPS)
+        # Nobody walks who has not been seen to.
+        walked = self.told >= KNOWN and not self.slow
+        slow = pace_mps < (physics.CRAWLS_MPS if walked else physics.WALKS_MPS)
         slow = slow and told >= KNOWN and uneven > EVEN
         return type(self)(pace_mps, told, uneven, slow)
 

@@ -37,7 +37,8 @@ def began(rows: Array, slow: bool) -> int:
     """With which of a unit's displacements its bearer began to go as he does now.
 
     Where two paces, before it and since, fit best what was told lately, in least squares over time; with the
-    oldest where the pace before says nothing else. Lately is since his gait changed before, too.
+    oldest where the pace before says nothing else. Lately is since his gait changed before, too. Who may have
+    crawled from the first on has not walked at a pace that says neither.
 
     Args:
         rows: its rows of the ledger's `steps`, in order of epoch, m × 12.
@@ -60,6 +61,8 @@ def began(rows: Array, slow: bool) -> int:
         told = way_m[:-1] ** 2 / lasted_s[:-1] + before_m**2 / before_s
         best = int(told.argmax())
         pace_mps = before_m[best] / before_s[best]
-        if pace_mps > physics.CRAWLS_MPS if slow else pace_mps < physics.WALKS_MPS:
+        from_first = lately >= len(back) and not len(changed)
+        walked_mps = physics.WALKS_MPS if from_first else physics.CRAWLS_MPS
+        if pace_mps > walked_mps if slow else pace_mps < physics.WALKS_MPS:
             return int(back[best])
     return int(back[len(lasted_s) - 1])

@@ -67,6 +67,13 @@ def test_a_pace_between_both_says_nothing_new(paces_mps: list[float], slow: bool
     assert changes(paces_mps, CRAWLS if slow else WALKS) == 0
 
 
+@given(st.lists(st.floats(physics.CRAWLS_MPS, physics.WALKS_MPS - 0.01), min_size=20, max_size=60))
+def test_who_has_not_walked_since_he_set_out_may_crawl(paces_mps: list[float]) -> None:
+    assert gone(paces_mps).slow
+    assert changes(paces_mps, Gait()) == 1
+    assert changes([WALK_MPS] * 10, gone(paces_mps)) == 1
+
+
 @given(st.lists(st.floats(0.2, 3.0), min_size=1, max_size=10))
 def test_a_pace_is_the_same_however_a_way_is_told(paces_mps: list[float]) -> None:
     """Half by half a second, and second by second; at an even pace it is that pace from the first on."""

@@ -39,6 +39,12 @@ def test_who_has_crawled_from_the_first_on_began_with_that(paces_mps: list[float
     assert began(told(paces_mps), slow=True) == 0
 
 
+@given(st.integers(1, 6), st.integers(1, 6))
+def test_who_began_at_a_pace_that_says_neither_had_not_walked(faster: int, slower: int) -> None:
+    paces_mps = [physics.WALKS_MPS - 0.02] * faster + [physics.CRAWLS_MPS + 0.02] * slower
+    assert began(told(paces_mps), slow=True) == 0
+
+
 def test_who_stood_in_between_began_before_that() -> None:
     assert began(told([WALK] * 10 + [CRAWL] * 5 + [0.0] * 30 + [CRAWL] * 4), slow=True) == 10
 
