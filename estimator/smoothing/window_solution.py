@@ -13,18 +13,15 @@ from estimator.fusion import physics
 from estimator.fusion.memory.prior import Prior
 from estimator.fusion.memory.state import FusionState
 from estimator.fusion.motion.unreliable_unit import may_have_turned
-from estimator.graph.dense import Array
 from estimator.graph.robust import GOOD
 from estimator.smoothing.back_to_filter import hand_back, keep_keyframes
 from estimator.smoothing.images.alternatives import Mode, alternatives_now
 from estimator.smoothing.images.flip_ambiguity import LIVE, Effort
 from estimator.smoothing.images.likeliest_image import JudgedImages, likeliest_image
-from estimator.smoothing.images.solutions import SLACKS_M
 from estimator.smoothing.keyframes.layout import Layout
 from estimator.smoothing.keyframes.levelled_ways import forget_steps, tell_rises
 from estimator.smoothing.problem.gauge_turn import turned
-from estimator.smoothing.problem.newton import METRES_OFF, Problem
-from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.readings.rows import Rows
 from estimator.smoothing.readings.sharing import LINK
 from estimator.smoothing.units.carried_bearers import carried_bearers
@@ -33,14 +30,10 @@ from estimator.smoothing.units.unit_mounting import likeliest_mounting
 from estimator.smoothing.units.unseen_climbs import find_unseen_climb, hinted
 from estimator.smoothing.window_extent import LONGEST_S, STEPS_S, restart, spacing_s, trim
 from estimator.smoothing.window_findings import tell_findings
+from estimator.smoothing.window_starts import ITERATIONS, RESTING, solved_from
 
 GONE = 8.0
 """A window this many times as long as it may be is begun anew."""
-ITERATIONS = 8
-"""Most windows rest after two or three steps. Among walls little holds a map: left after four, one was 17 m
-off where it would have rested 9 m off."""
-RESTING = 0.1
-"""A window that gains less in log likelihood is solved again soon anyway."""
 
 
 def refresh(state: FusionState, solved_t: float, bent: bool = False, effort: Effort = LIVE) -> bool:
@@ -91,7 +84,7 @@ def _likeliest(
     """The likeliest solution of all hypotheses, and others by how units are worn."""
     build = partial(_problem, since=since)
     problem = build(state)
-    solved = _solved(problem, problem.layout.start(), solved_t, bent)
+    solved = solved_from(problem, problem.layout.start(), solved_t, bent)
     if hinted(problem, solved):
         problem, solved = find_unseen_climb(problem, solved, build, RESTING)
     problem, solved = carried_bearers(problem, solved, build, RESTING)
@@ -105,36 +98,6 @@ def _problem(state: FusionState, since: float) -> Problem:
     rows = Rows(layout, since)
     rows.learn(state.noise)
     return Problem(layout, rows, state.prior)
-
-
-def _solved(problem: Problem, x: Array, solved_t: float, bent: bool) -> Solution:
-    """The likeliest solution of some starts: the filter's estimate, and the units' dead reckoning.
-
-    The filter may have turned the map, of which what was solved before knows nothing: the kink between the
-    two can bend everything, and turn the map further with each solution.
-
-    A reading that has led the filter far away lies between keyframes that know nothing of it and those that
-    do: it is held against a start that is as unsure as that, or it would be an outlier for ever. So is what
-    was bent by readings of a node that turned out to lie elsewhere.
-
-    Args:
-        problem: of the window.
-        x: where the filter has led to, flat.
-        solved_t: when the window was last solved (s).
-        bent: see `refresh`.
-    """
-    free = any(walk.way is None for walk in problem.layout.walks)
-    slacks = SLACKS_M if free else ()
-    kinked = problem.going.kinked(x, physics.TICK_S)
-    solved = problem.solve(x, slacks, len(slacks) + ITERATIONS, RESTING, kinked)
-    reckoned = problem.going.reckoned(x, solved_t)
-    if problem.at(reckoned).cost < solved.cost:
-        other = problem.solve(reckoned, slacks, len(slacks) + ITERATIONS, RESTING)
-        solved = min(solved, other, key=lambda found: found.cost)
-    if bent:
-        straight = problem.solve(solved.x, METRES_OFF, len(METRES_OFF) + ITERATIONS, RESTING)
-        solved = min(solved, straight, key=lambda found: found.cost)
-    return solved
 
 
 def _past_walls(state: FusionState, judged: JudgedImages) -> JudgedImages:

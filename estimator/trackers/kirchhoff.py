@@ -22,7 +22,7 @@ from estimator.trackers.lag import Lag
 from estimator.trackers.lag_record import LagRecord
 from estimator.trackers.snapshot import read_snapshot
 
-VERSION = 65
+VERSION = 66
 
 
 class _Snapshot(msgspec.Struct, frozen=True, array_like=True):

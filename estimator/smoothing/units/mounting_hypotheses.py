@@ -16,6 +16,7 @@ from estimator.inertial.levelling import ANYWHERE_RAD
 from estimator.measurements.bearing import within_pi
 from estimator.smoothing.problem.newton import Problem
 from estimator.smoothing.problem.solution import Solution
+from estimator.smoothing.units.own_ways import own_ways
 from estimator.smoothing.units.turned_starts import as_turned, same_turn, turned_starts
 
 MIRRORED_RARE, TURNED_RARE = math.log(0.0025), math.log(0.0075)
@@ -186,7 +187,7 @@ def _reckoned(problem: Problem, x: Array, some: Collection[int] | None = None) -
     """
     layout, begins = problem.layout, problem.layout.state.ledger.table("begins")
     known = () if problem.prior is None else problem.prior.keys
-    there, found = x.copy(), x.copy()
+    there = x.copy()
     chosen = {
         walk.number: i
         for i, walk in enumerate(layout.walks)
@@ -198,13 +199,4 @@ def _reckoned(problem: Problem, x: Array, some: Collection[int] | None = None) -
         rows = begins[begins[:, 1] == number]
         first = layout.states(there, i)[layout.walks[i].first]
         first[:3], first[3:] = rows[0, 4:7], (rows[rows[:, 2] == 1.0][-1, 10], 0.0, 0.0)
-    there = problem.going.reckoned(there, -math.inf)
-    for i in chosen.values():
-        layout.states(found, i)[:] = layout.states(there, i)
-    size = layout.length * layout.width
-    for t, crumb, by in layout.state.ledger.table("drops")[:, :3].tolist():
-        if int(crumb) in layout.stands and int(by) in chosen:
-            i, start = chosen[int(by)], size + layout.stands[int(crumb)]
-            for c in range(3):
-                found[start + c] = np.interp(t, layout.times[:, i], layout.states(found, i)[:, c])
-    return found
+    return own_ways(problem, there, chosen)
