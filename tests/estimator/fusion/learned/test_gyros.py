@@ -47,10 +47,10 @@ def test_what_says_little_changes_little() -> None:
 @given(
     bias=st.floats(0.01, 1.0), sigma=st.floats(0.01, 2.0), others=st.lists(st.floats(-0.6, 0.6), max_size=3)
 )
-def test_a_bias_is_left_as_far_and_as_unsure_as_all_spreads_together_leave_it(
+def test_of_a_bias_the_mean_square_is_left_that_all_spreads_together_leave(
     bias: float, sigma: float, others: list[float]
 ) -> None:
-    """Its posterior by integration over bias and spread."""
+    """Its posterior by integration over bias and spread; no other prior leaves one nearer to it."""
     own, other_m2 = said(bias, sigma), math.radians(0.05) ** 2
     prior = bias_sigma_radps(own, [own, *(said(other, 0.05) for other in others)])
     alone, d = math.radians(sigma) ** 2, math.radians(bias)
@@ -62,11 +62,29 @@ def test_a_bias_is_left_as_far_and_as_unsure_as_all_spreads_together_leave_it(
             math.exp(-0.5 * math.radians(other) ** 2 / known) / math.sqrt(known) for other in others
         )
         joint += weight / math.sqrt(spread) * np.exp(-0.5 * (grid**2 / spread + (grid - d) ** 2 / alone))
-    total = joint.sum()
-    mean = float((grid * joint).sum() / total)
-    variance = float(((grid - mean) ** 2 * joint).sum() / total)
+    joint /= joint.sum()
+    square = float((grid**2 * joint).sum())
+
+    def away(prior_radps: float) -> float:
+        """Divergence of the posterior from the one that a prior leaves, up to a constant."""
+        share = prior_radps**2 / (prior_radps**2 + alone)
+        variance, mean = share * alone, share * d
+        return float((joint * (grid - mean) ** 2).sum()) / variance + math.log(variance)
+
     share = prior**2 / (prior**2 + alone)
-    assert share == pytest.approx(min(max(mean / d, variance / alone), 0.999), rel=2e-3, abs=1e-4)
+    assert share * alone + (share * d) ** 2 == pytest.approx(square, rel=1e-3)
+    assert away(prior) <= min(away(0.97 * prior), away(1.03 * prior)) + 1e-9
+
+
+@given(
+    bias=st.floats(0.01, 3.0), sigma=st.floats(0.01, 2.0), others=st.lists(st.floats(-0.6, 0.6), max_size=3)
+)
+def test_no_bias_is_less_known_beforehand_than_by_the_widest_spread(
+    bias: float, sigma: float, others: list[float]
+) -> None:
+    own = said(bias, sigma)
+    prior = bias_sigma_radps(own, [own, *(said(other, 0.05) for other in others)])
+    assert math.sqrt(SPREADS[0]) * 0.999 <= prior <= math.sqrt(SPREADS[-1]) * 1.001
 
 
 @given(bias=st.floats(-0.6, 0.6), sigma=st.floats(0.01, 1.0), prior=st.floats(0.02, 1.0))
