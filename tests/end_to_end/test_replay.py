@@ -221,7 +221,7 @@ def test_long_before_the_end_of_an_incident_the_trail_leads_to_where_somebody_wa
 ) -> None:
     incident = post.open_incident()
     heard(post, incident, base(T0), responder(T0, "walker", "A", [-10, 2, 0], sigma_m=0.1))
-    heard(post, incident, *(step(T0 + second, "walker", [0.8, 0, 0]) for second in range(1, 41)))
+    heard(post, incident, *(step(T0 + second, "walker", [1.0, 0, 0]) for second in range(1, 41)))
     for later in (2700, 5400):
         heard(post, incident, step(T0 + later, "walker", [0, 0, 0]))
     recorded(post, incident, T0 + 5400)
