@@ -27,7 +27,7 @@ STRANGE = 2.5
 
 
 def solved_from(problem: Problem, x: Array, solved_t: float, bent: bool) -> Solution:
-    """The likeliest solution of some starts: the filter's estimate, and the units' dead reckoning.
+    """The likeliest solution of some starts: the filter's estimate, dead reckoning, all as it usually is.
 
     The filter may have turned the map, of which what was solved before knows nothing: the kink between the
     two can bend everything, and turn the map further with each solution.
