@@ -3,8 +3,9 @@
 One unit's gyro turns by 0.03 degrees a second, another's by ten times that; the units of a crew are mostly
 of one kind. What the readings alone say of each bias, d with variance v, is held against several spreads:
 p ∝ Π N(d; 0, v + σ²), uniform in σ beforehand (Gelman 2006, "Prior distributions for variance parameters in
-hierarchical models"). Of each bias the prior is the one Gaussian that leaves of it the mean square which they
-all leave: of a bad unit in a good crew they say two things. It is none wider than the widest of them.
+hierarchical models"). Of each bias the prior is the one Gaussian under which its mean is that of them all, or
+a wider one where they leave it less sure: of a bad unit in a good crew they say two things. It is none wider
+than the widest of them.
 """
 
 import math
@@ -29,8 +30,8 @@ def bias_sigma_radps(own: Told, told: Iterable[Told]) -> float:
         told: what they say of all units', its own included.
 
     Returns:
-        It, which leaves to the bias the mean square that all spreads together leave to it. Of the Gaussians
-        that a prior may leave that one is nearest to what they leave (Kullback-Leibler divergence).
+        It, at least what all spreads together give to the mean and to the variance of the bias, and at most
+        the widest of them.
     """
     said = [one for one in told if one[0] > 0.0]
     return prior_sigma_radps(*own, np.array(said, dtype=np.float64).reshape(-1, 2))
@@ -55,8 +56,8 @@ def prior_sigma_radps(information: float, product: float, told: Array) -> float:
         return math.sqrt((weight * SPREADS).sum())
     alone = 1.0 / information
     share = SPREADS / (SPREADS + alone)
-    # All in variances of what the readings alone say: a share s of it kept leaves the mean square s + s² m.
-    m = product**2 / information
-    square = (weight * (share + m * share**2)).sum()
-    kept = min(2.0 * square / (1.0 + math.sqrt(1.0 + 4.0 * m * square)), share.max())
+    mean = (weight * share).sum()
+    # The variance that all spreads together leave, over that of the readings alone.
+    left = mean + (product**2 / information) * (weight * (share - mean) ** 2).sum()
+    kept = min(max(mean, left), share.max())
     return math.sqrt(alone * kept / (1.0 - kept))
