@@ -10,13 +10,12 @@ from estimator.fusion.learned.gyros import bias_sigma_radps
 from estimator.graph.dense import Array
 from estimator.smoothing.images.solutions import SLACKS_M
 from estimator.smoothing.keyframes.layout import Layout
-from estimator.smoothing.keyframes.walks import STATES
+from estimator.smoothing.keyframes.priors import scale_variance
+from estimator.smoothing.keyframes.walks import BIAS, SCALE, STATES
 from estimator.smoothing.problem.newton import METRES_OFF, Problem
 from estimator.smoothing.problem.solution import Solution
 from estimator.smoothing.units.own_ways import own_ways
 
-BIAS, SCALE = 4, 5
-"""Columns of a unit's state."""
 ITERATIONS = 8
 """Most windows rest after two or three steps. Among walls little holds a map: left after four, one was 17 m
 off where it would have rested 9 m off."""
@@ -93,11 +92,10 @@ def _usual(layout: Layout, led: Iterable[int]) -> dict[int, float]:
     state, size, found = layout.state, layout.length * layout.width, dict[int, float]()
     for i in led:
         walk = layout.walks[i]
-        crawls = 0.0 if walk.way is None else walk.way.renewed2(float(layout.times[walk.first, i]))
         start = walk.first * layout.width + STATES * i
         others = [other.bias_told for other in state.lives() if other.index != walk.number]
         found[start + BIAS] = bias_sigma_radps(UNTOLD, others)
-        found[start + SCALE] = crawls**0.5 or state.scale_sigma(walk.node)
+        found[start + SCALE] = scale_variance(layout, i) ** 0.5
     for (kind, number), start in layout.technologies.items():
         if kind == "range":
             name = state.sources[number]

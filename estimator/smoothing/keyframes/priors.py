@@ -59,10 +59,7 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
             unit = rows[rows[:, 2] == 1.0][-1]
             mean += [float(unit[10]), 0.0, 0.0]
             bias = state.bias_sigma_radps(walk.node)
-            # Who crawls from the first on begins with the scale of a crawl.
-            crawls = walk.way.renewed2(float(layout.times[walk.first, i]))
-            scale2 = crawls or state.scale_sigma(walk.node) ** 2
-            known_by += [float(unit[11]) ** -2, bias**-2, 1.0 / scale2]
+            known_by += [float(unit[11]) ** -2, bias**-2, 1.0 / scale_variance(layout, i)]
     size = layout.length * layout.width
     for row in state.ledger.table("stands"):
         number = int(row[1])
@@ -94,3 +91,11 @@ def own_priors(layout: Layout, known: Collection[Key]) -> Priors:
         mean += told
         known_by += [each**-2 for each in sigma]
     return Priors(np.array(at, dtype=np.intp), np.array(mean), np.array(known_by, dtype=np.float64))
+
+
+def scale_variance(layout: Layout, index: int) -> float:
+    """Variance of the prior of the scale of a unit's steps where its walk begins, by the walk's index."""
+    walk = layout.walks[index]
+    # Who crawls from the first on begins with the scale of a crawl.
+    crawls = 0.0 if walk.way is None else walk.way.renewed2(float(layout.times[walk.first, index]))
+    return crawls or layout.state.scale_sigma(walk.node) ** 2

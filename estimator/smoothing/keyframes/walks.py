@@ -15,8 +15,8 @@ VARIANCES = np.array([6, 6, 7, 8, 9, 10])
 """Which sums of a way are the variances of which states."""
 STATES, PLACES = 6, 3
 """Numbers of a state, and how many of them in front are its place."""
-HEADING, SCALE = 3, 5
-"""Which of a unit's state's numbers are the heading, and its scale − 1."""
+HEADING, BIAS, SCALE = 3, 4, 5
+"""Which of a unit's state's numbers are the heading, its gyro's bias, and its scale − 1."""
 
 
 class Motion(NamedTuple):

@@ -20,7 +20,7 @@ from estimator.fusion.memory.prior import Key
 from estimator.fusion.memory.state import FusionState
 from estimator.graph.dense import Array
 from estimator.graph.variable import BODY
-from estimator.smoothing.keyframes.walks import STATES, Motion
+from estimator.smoothing.keyframes.walks import BIAS, STATES, Motion
 from estimator.smoothing.learning.alike_units import pulled
 from estimator.smoothing.learning.delays import doubt_delays
 from estimator.smoothing.learning.range_noise import learn_ranging
@@ -38,8 +38,6 @@ SEEN = 0.03
 LEAST, MOST = 0.03, 400.0
 """The worst unit is off by 0.7 m in each metre: it tells nothing any more."""
 ROUNDING_S = 1e-6
-BIAS = 4
-"""Which of a state's numbers is the gyro bias."""
 PARTS = 4
 """Numbers of a state that its noise is learned of: place and heading."""
 FARTHEST = 3.0

@@ -10,7 +10,8 @@ from estimator.measurements import AnyReading
 from estimator.measurements.displacement import Displacement
 from estimator.measurements.node import Node
 from estimator.measurements.range import Range
-from estimator.smoothing.window_starts import BIAS, SCALE, as_usual
+from estimator.smoothing.keyframes.walks import BIAS, SCALE
+from estimator.smoothing.window_starts import as_usual
 from tests.estimator.smoothing.images.test_flip_ambiguity import solved_of
 from tests.estimator.smoothing.problem.test_marginals import prior_at
 from tests.estimator.smoothing.windows import problem_of
